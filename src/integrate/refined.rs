@@ -1,7 +1,7 @@
 //! The motion inside an implicit step, brought to the accuracy of its ends.
 //!
 //! Dense output is an interpolant of accelerations at few points: its order is lower than that of the end, so that inside a step it is
-//! off by up to a hundred tolerances. What is read off there, rows and extremes, deserves better. So the accelerations at
+//! off by a hundred tolerances and more at tight ones. What is read off there, rows and extremes, deserves better. So the accelerations at
 //! Chebyshev points follow from the equations along the dense output; their polynomial, integrated twice, is a better motion: one
 //! sweep of Picard's iteration (1890), which gains at least one order. A second one is not worth its time.
 //!
