@@ -22,6 +22,7 @@ mod pictures;
 mod precision;
 #[path = "../common/random.rs"]
 mod random;
+mod random_mechanisms;
 mod random_models;
 mod run;
 mod sizes;

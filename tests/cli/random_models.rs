@@ -4,6 +4,7 @@
 //! `DALEMBERT_RANDOM_SCENES=300` runs as many, `DALEMBERT_RANDOM_SCENE=17` one of them.
 
 use super::random::Random;
+use super::random_mechanisms::{Kind, mechanism};
 use super::{dalembert, json};
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -239,100 +240,144 @@ fn assert_rests_alike(folder: &Path, force: f64, of: &str) {
     }
 }
 
-#[test]
-fn random_models_move_alike_in_both_forms() {
-    let asked = |name: &str| std::env::var(name).ok().and_then(|n| n.parse::<u64>().ok());
-    let share = asked("DALEMBERT_RANDOM_SCENES").unwrap_or(SHARE);
-    let numbers = match asked("DALEMBERT_RANDOM_SCENE") {
-        Some(number) => number..number + 1,
-        None => asked("DALEMBERT_FROM").unwrap_or(0)..share,
-    };
-    let (mut events, mut reduced) = (0, 0);
-    for number in numbers {
-        let mut random = Random(number);
-        let (text, n, alike) = model(&mut random);
-        let folder = tempfile::tempdir().unwrap();
-        for (form, more) in [("reduced", ""), ("multipliers", "model.multipliers()\n")] {
-            fs::create_dir(folder.path().join(form)).unwrap();
-            let file = folder.path().join(form).join("model.py");
-            fs::write(file, format!("{text}{more}")).unwrap();
-        }
-        let common = random.within(-2.0, 2.0);
-        let mut rate = || {
-            if alike {
-                common
-            } else {
-                random.within(-2.0, 2.0)
-            }
-        };
-        let rates = (0..n).map(|i| (format!("x{i}.rate"), json!(rate())));
-        let mut scene = json!({
-            "initial": rates.collect::<serde_json::Map<_, _>>(),
-            "inputs": { "F": { "sine": {
-                "amplitude": random.within(0.0, 15.0),
-                "angular_frequency": random.within(1.0, 8.0),
-            } }, "a": { "sine": {
-                "amplitude": random.within(0.0, 8.0),
-                "angular_frequency": random.within(1.0, 8.0),
-                "phase": random.within(0.0, 6.0),
-            } } },
-            "end": 3.0,
-            "accuracy": { "relative": 1e-11 },
-            "record": { "every": 0.1 },
-        });
-        if text.contains("model.contact(") {
-            let law = random.one_of(&["newton", "poisson"]);
-            let order = random.one_of(&["together", "sequence"]);
-            scene["impacts"] = json!({ "law": law, "order": order });
-        }
-        let [(one, a), (other, b)] =
-            ["reduced", "multipliers"].map(|form| run(folder.path(), form, &scene));
-        let of = format!("model {number}:\n{text}{scene}");
-        assert_eq!(one["failure"], other["failure"], "{of}");
-        for (a, b) in a.iter().zip(&b) {
+/// A model in both forms, and a scene of it: they move alike, with the same impulses, balanced energies and the same extremes. How
+/// many events there were, and whether the first form is reduced. They also start at rest alike under a constant force.
+fn move_alike(
+    (text, n): (&str, usize),
+    (scene, force): (&serde_json::Value, f64),
+    of: &str,
+) -> (u64, bool) {
+    let folder = tempfile::tempdir().unwrap();
+    for (form, more) in [("reduced", ""), ("multipliers", "model.multipliers()\n")] {
+        fs::create_dir(folder.path().join(form)).unwrap();
+        let file = folder.path().join(form).join("model.py");
+        fs::write(file, format!("{text}{more}")).unwrap();
+    }
+    let [(one, a), (other, b)] =
+        ["reduced", "multipliers"].map(|form| run(folder.path(), form, scene));
+    assert_eq!(one["failure"], other["failure"], "{of}");
+    for (a, b) in a.iter().zip(&b) {
+        assert!(
+            (a - b).abs() <= 1e-7 * (1.0 + a.abs()),
+            "{a} and {b} in {of}"
+        );
+    }
+    let [a, b] = ["reduced", "multipliers"].map(|form| impulses(folder.path(), form));
+    assert!(a.keys().eq(b.keys()), "{a:?} and {b:?} in {of}");
+    for (name, [a, left_by_one]) in a {
+        let [b, left_by_other] = b[&name];
+        let left = left_by_one.max(left_by_other);
+        assert!(
+            (a - b).abs() <= 1e-7 * (1.0 + a.abs()) + left,
+            "{name}: {a} and {b} in {of}"
+        );
+    }
+    for run in [&one, &other] {
+        let imbalance = run["energy"]["imbalance"].as_f64().unwrap();
+        // Masses are of 1 kg: what is stored may be a small difference of kinetic and potential energy.
+        let largest = |name: &String, extreme| run["peaks"][name][extreme].as_f64().unwrap();
+        let rates = (0..n).map(|i| format!("x{i}.rate"));
+        let kinetic: f64 = rates
+            .map(|name| largest(&name, "max").max(-largest(&name, "min")).powi(2))
+            .sum();
+        let bound = 1e-10 * (10.0 + kinetic);
+        assert!(imbalance.abs() < bound, "{imbalance:e} J in {of}");
+    }
+    for name in (0..n).flat_map(|i| [format!("x{i}"), format!("x{i}.rate")]) {
+        for extreme in ["min", "max"] {
+            let [a, b] = [&one, &other].map(|run| run["peaks"][&name][extreme].as_f64().unwrap());
             assert!(
                 (a - b).abs() <= 1e-7 * (1.0 + a.abs()),
-                "{a} and {b} in {of}"
-            );
-        }
-        let [a, b] = ["reduced", "multipliers"].map(|form| impulses(folder.path(), form));
-        assert!(a.keys().eq(b.keys()), "{a:?} and {b:?} in {of}");
-        for (name, [a, left_by_one]) in a {
-            let [b, left_by_other] = b[&name];
-            let left = left_by_one.max(left_by_other);
-            assert!(
-                (a - b).abs() <= 1e-7 * (1.0 + a.abs()) + left,
                 "{name}: {a} and {b} in {of}"
             );
         }
-        for run in [&one, &other] {
-            let imbalance = run["energy"]["imbalance"].as_f64().unwrap();
-            // Masses are of 1 kg: what is stored may be a small difference of kinetic and potential energy.
-            let largest = |name: &String, extreme| run["peaks"][name][extreme].as_f64().unwrap();
-            let rates = (0..n).map(|i| format!("x{i}.rate"));
-            let kinetic: f64 = rates
-                .map(|name| largest(&name, "max").max(-largest(&name, "min")).powi(2))
-                .sum();
-            let bound = 1e-10 * (10.0 + kinetic);
-            assert!(imbalance.abs() < bound, "{imbalance:e} J in {of}");
+    }
+    // A belt carries along what nothing else holds, in reduced modes alone.
+    if !text.contains("* speed") {
+        assert_rests_alike(folder.path(), force, of);
+    }
+    let has_impulses = |name: &String| name.ends_with("_impulse");
+    let is_reduced = !one["peaks"].as_object().unwrap().keys().any(has_impulses);
+    (one["events"]["total"].as_u64().unwrap(), is_reduced)
+}
+
+/// A scene of a model.
+fn scene(random: &mut Random, text: &str, rates: &[f64]) -> serde_json::Value {
+    let rates = rates.iter().enumerate();
+    let rates = rates.map(|(i, rate)| (format!("x{i}.rate"), json!(rate)));
+    let mut scene = json!({
+        "initial": rates.collect::<serde_json::Map<_, _>>(),
+        "inputs": { "F": { "sine": {
+            "amplitude": random.within(0.0, 15.0),
+            "angular_frequency": random.within(1.0, 8.0),
+        } } },
+        "end": 3.0,
+        "accuracy": { "relative": 1e-11 },
+        "record": { "every": 0.1 },
+    });
+    if text.contains("input=\"a\"") {
+        scene["inputs"]["a"] = json!({ "sine": {
+            "amplitude": random.within(0.0, 8.0),
+            "angular_frequency": random.within(1.0, 8.0),
+            "phase": random.within(0.0, 6.0),
+        } });
+    }
+    if text.contains("model.contact(") {
+        let law = random.one_of(&["newton", "poisson"]);
+        let order = random.one_of(&["together", "sequence"]);
+        scene["impacts"] = json!({ "law": law, "order": order });
+    }
+    scene
+}
+
+/// The numbers of models that are asked for.
+fn numbers() -> std::ops::Range<u64> {
+    let asked = |name: &str| std::env::var(name).ok().and_then(|n| n.parse::<u64>().ok());
+    match asked("DALEMBERT_RANDOM_SCENE") {
+        Some(number) => number..number + 1,
+        None => {
+            let share = asked("DALEMBERT_RANDOM_SCENES").unwrap_or(SHARE);
+            asked("DALEMBERT_FROM").unwrap_or(0)..share
         }
-        for name in (0..n).flat_map(|i| [format!("x{i}"), format!("x{i}.rate")]) {
-            for extreme in ["min", "max"] {
-                let [a, b] =
-                    [&one, &other].map(|run| run["peaks"][&name][extreme].as_f64().unwrap());
-                assert!(
-                    (a - b).abs() <= 1e-7 * (1.0 + a.abs()),
-                    "{name}: {a} and {b} in {of}"
-                );
-            }
-        }
-        // A belt carries along what nothing else holds, in reduced modes alone.
-        if !text.contains("* speed") {
-            assert_rests_alike(folder.path(), random.within(-2.0, 2.0), &of);
-        }
-        events += one["events"]["total"].as_u64().unwrap();
-        let has_impulses = |name: &String| name.ends_with("_impulse");
-        reduced += u64::from(!one["peaks"].as_object().unwrap().keys().any(has_impulses));
+    }
+}
+
+#[test]
+fn random_models_move_alike_in_both_forms() {
+    let (mut events, mut reduced) = (0, 0);
+    for number in numbers() {
+        let mut random = Random(number);
+        let (text, n, alike) = model(&mut random);
+        let common = random.within(-2.0, 2.0);
+        let mut rate = || match alike {
+            true => common,
+            false => random.within(-2.0, 2.0),
+        };
+        let rates: Vec<f64> = (0..n).map(|_| rate()).collect();
+        let scene = scene(&mut random, &text, &rates);
+        let of = format!("model {number}:\n{text}{scene}");
+        let force = random.within(-2.0, 2.0);
+        let (happened, is_reduced) = move_alike((&text, n), (&scene, force), &of);
+        events += happened;
+        reduced += u64::from(is_reduced);
     }
     println!("{events} events, {reduced} models in two forms");
+}
+
+#[test]
+fn random_mechanisms_move_alike_in_both_forms() {
+    let (mut events, mut reduced) = (0, 0);
+    for number in numbers() {
+        let mut random = Random(number);
+        let kinds = [Kind::Cart, Kind::Pendulum, Kind::Feet];
+        let (text, n) = mechanism(&mut random, kinds[number as usize % kinds.len()]);
+        let rates: Vec<f64> = (0..n).map(|_| random.within(-1.0, 1.0)).collect();
+        let scene = scene(&mut random, &text, &rates);
+        let of = format!("mechanism {number}:\n{text}{scene}");
+        let force = random.within(-2.0, 2.0);
+        let (happened, is_reduced) = move_alike((&text, n), (&scene, force), &of);
+        events += happened;
+        reduced += u64::from(is_reduced);
+    }
+    println!("{events} events, {reduced} mechanisms in two forms");
 }

@@ -135,6 +135,10 @@ impl Accumulation {
     /// many units in the last place as events are remembered.
     pub const HARDLY: f64 = Self::MEMORY as f64 * f64::EPSILON;
 
+    /// Part of the time that is left by which predictions of a limit that is believed differ at most: two digits, since three
+    /// predictions of a series that is none agree in one by chance.
+    const TOLD: f64 = 0.01;
+
     /// No events yet. Given are the absolute tolerances of coordinates and velocities, and the number of discrete
     /// states.
     pub fn new(absolute: Box<[f64]>, discretes: usize) -> Self {
@@ -411,6 +415,12 @@ impl Accumulation {
             uncertainty: uncertainty.to_vec(),
             modes: vec![self.mode(0)],
         })
+    }
+
+    /// The same, if what is left until then is known to [`Self::TOLD`] of itself at the instant `now`.
+    pub fn predicted_well(&self, now: Instant) -> Option<Limit> {
+        let limit = self.predicted()?;
+        (self.best[0] <= Self::TOLD * limit.at.since(now)).then_some(limit)
     }
 
     /// Counts the last events that the motion does not resolve; whether the memory is full of them.

@@ -74,11 +74,11 @@ impl<'p> Simulation<'p> {
         };
         self.accumulation.set_needs_series(needs_series);
         let unresolved = hop == Resolution::Lost;
-        if unresolved && self.rest_unresolved(contacts)? {
+        if unresolved && (self.rest_unresolved(contacts)? || self.rest_of_rests(contacts)?) {
             return Ok(());
         }
         if closes && self.accumulation.is_unresolved(unresolved) {
-            if self.rest_of_rests(contacts)? {
+            if self.rest_of_rests_anyhow(contacts)? {
                 return Ok(());
             }
             return Err(Box::new(Reason::Chattering {

@@ -36,12 +36,19 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// The same where accumulations follow each other ever faster: one body comes to rest on another that still rocks, again and again.
-    /// The limit is that of their own limits, as they have told it best.
+    /// The same where accumulations follow each other ever faster: one body comes to rest on another that still rocks, again and
+    /// again. The limit is that of their own limits, where these tell it well.
     pub(super) fn rest_of_rests(&mut self, contacts: &'p Contacts) -> Stoppable<bool> {
-        let relative = self.problem.accuracy.relative;
-        let limit = self.rests.extrapolated(relative);
-        match limit.or_else(|| self.rests.predicted()) {
+        let limit = self.rests.extrapolated(self.problem.accuracy.relative);
+        match limit.or_else(|| self.rests.predicted_well(self.here.now)) {
+            Some(limit) => self.rest_contacts_by(contacts, limit),
+            None => Ok(false),
+        }
+    }
+
+    /// The same where nothing else tells how the motion goes on: as their own limits have told it best.
+    pub(super) fn rest_of_rests_anyhow(&mut self, contacts: &'p Contacts) -> Stoppable<bool> {
+        match self.rests.predicted() {
             Some(limit) => self.rest_contacts_by(contacts, limit),
             None => Ok(false),
         }
