@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
 /// Version of what a checkpoint holds; another one is refused.
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 
 /// A run in parts, at an instant: see [`super::Simulator::snapshot`]. It can be kept by serde, in any format that keeps
 /// texts; numbers of the run are in it by their bits.

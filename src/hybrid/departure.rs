@@ -31,8 +31,9 @@ pub(super) enum Departure {
     Up { order: usize, until: f64 },
     /// It is negative, or becomes so at once with the derivative of this order.
     Down { order: usize },
-    /// It is zero, and all derivatives are, as far as rounding tells.
-    Stays,
+    /// It is zero, and all derivatives are, as far as rounding tells; and for a time, s, what rounding makes of these is no more than of
+    /// the value: 0 where that is not asked for.
+    Stays { until: f64 },
     /// Rounding errors are not known: an operation has no rule, or is singular.
     Unknown,
 }
@@ -80,7 +81,10 @@ impl Question<'_> {
             }
         };
         let Some(order) = decisive else {
-            return Departure::Stays;
+            let others = expansion.result(tape, index)[1..].iter();
+            let sizes = others.map(|c| c.value.abs() + c.error);
+            let until = outweighs_for(2.0 * value.error, sizes, self.within);
+            return Departure::Stays { until };
         };
         if expansion.result(tape, index)[order].sign() == Some(false) {
             return Departure::Down { order };
@@ -278,7 +282,7 @@ impl<'p> Simulation<'p> {
                 shown: 0,
             };
             let departure = question.answer(&mut self.expansion);
-            matches!(departure, Departure::Up { .. } | Departure::Stays)
+            matches!(departure, Departure::Up { .. } | Departure::Stays { .. })
         })
     }
 

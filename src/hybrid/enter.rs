@@ -110,7 +110,7 @@ impl<'p> Simulation<'p> {
             let vanishing = zero.map_or(0, |zero| zero.vanishing);
             if held.contains(&watched.guard) {
                 let departure = self.departure(watched.guard, vanishing, ORDERS);
-                if matches!(departure, Departure::Stays | Departure::Unknown) {
+                if matches!(departure, Departure::Stays { .. } | Departure::Unknown) {
                     self.signs.remember(Watch::Dormant, f64::INFINITY);
                     continue;
                 }
@@ -151,7 +151,13 @@ impl<'p> Simulation<'p> {
                 Departure::Up { until: 0.0, .. } => (sign, 0.0),
                 Departure::Up { until, .. } => (Watch::Armed, until),
                 Departure::Down { .. } => (Watch::Violated, 0.0),
-                Departure::Stays | Departure::Unknown => (sign, 0.0),
+                // A force that nothing tells from zero does not pull (a block that rests on another, and both fall freely).
+                Departure::Stays { until }
+                    if mode.is_of_forces(watched.guard, self.context.discrete()) =>
+                {
+                    (Watch::Armed, until)
+                }
+                Departure::Stays { .. } | Departure::Unknown => (sign, 0.0),
             };
             self.signs.remember(watch, away);
             if let Some(index) = idle_acceleration(guard, departure) {
@@ -160,7 +166,7 @@ impl<'p> Simulation<'p> {
             let falls = match departure {
                 Departure::Down { .. } => true,
                 Departure::Unknown => sign == Watch::Violated,
-                Departure::Up { .. } | Departure::Stays => false,
+                Departure::Up { .. } | Departure::Stays { .. } => false,
             };
             if falls && violation.is_none() {
                 let at = Free {
@@ -284,7 +290,7 @@ fn idle_acceleration(guard: &Guard, departure: Departure) -> Option<usize> {
     let of_acceleration = if rate { 1 } else { 2 };
     let is_idle = match departure {
         Departure::Up { order, .. } | Departure::Down { order } => order > of_acceleration,
-        Departure::Stays => true,
+        Departure::Stays { .. } => true,
         Departure::Unknown => false,
     };
     is_idle.then_some(index)

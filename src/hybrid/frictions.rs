@@ -264,8 +264,10 @@ impl<'p> Simulation<'p> {
             }
             match (self.departure(*guard, 0, 0), friction.sticks) {
                 (Departure::Unknown, _) => return None,
-                (Departure::Down { .. }, _) | (Departure::Stays, false) => return Some(false),
-                (Departure::Up { .. } | Departure::Stays, _) => {}
+                (Departure::Down { .. }, _) | (Departure::Stays { .. }, false) => {
+                    return Some(false);
+                }
+                (Departure::Up { .. } | Departure::Stays { .. }, _) => {}
             }
         }
         Some(true)

@@ -101,7 +101,8 @@ pub struct Accumulation {
     /// Number of last events since each of which something moved, but nothing by more than rounding.
     still: usize,
     /// The limit that was told best, and by how much, s, while patterns repeat ([`Self::predict`]): uncertainty, the two parts
-    /// of its time, number of events since, uncertainties of the last two predictions, its state, and what that may be off by.
+    /// of its time, number of events since, uncertainties of the last two predictions, the time that was left, s, its state, and what
+    /// that may be off by.
     /// Infinite where none is known.
     best: Box<[f64]>,
     /// Number of last events that the motion did not resolve.
@@ -111,7 +112,7 @@ pub struct Accumulation {
 }
 
 /// Numbers of a prediction before those of its state.
-const PREDICTION: usize = 6;
+const PREDICTION: usize = 7;
 
 impl Persist for Accumulation {
     fn persist(&mut self, memory: &mut Memory) -> Option<()> {
@@ -396,6 +397,7 @@ impl Accumulation {
             self.best[0] = uncertainty;
             self.best[1..3].copy_from_slice(&limit.at.parts());
             self.best[3] = 0.0;
+            self.best[6] = series.remaining;
             self.best[PREDICTION..][..n].copy_from_slice(&limit.state);
             self.best[PREDICTION + n..].copy_from_slice(&limit.uncertainty);
         }
@@ -417,10 +419,13 @@ impl Accumulation {
         })
     }
 
-    /// The same, if what is left until then is known to [`Self::TOLD`] of itself at the instant `now`.
+    /// The same, if it is believed at the instant `now`: at least half of the time that was left when it was told has passed since, and what is
+    /// left now is known to [`Self::TOLD`] of itself.
     pub fn predicted_well(&self, now: Instant) -> Option<Limit> {
         let limit = self.predicted()?;
-        (self.best[0] <= Self::TOLD * limit.at.since(now)).then_some(limit)
+        let left = limit.at.since(now);
+        let is_known = self.best[0] <= Self::TOLD * left;
+        (is_known && 2.0 * left <= self.best[6]).then_some(limit)
     }
 
     /// Counts the last events that the motion does not resolve; whether the memory is full of them.

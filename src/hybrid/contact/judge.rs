@@ -6,7 +6,7 @@
 //! count once, whatever the names of their sets.
 
 use super::geometry::{Geometry, Line, write_states};
-use super::hold::{ContactValues, held_lines};
+use super::hold::ContactValues;
 use super::many::{all_of_many, count, to_try};
 use super::share::{Dropped, Forces, Sharing};
 use super::unforced::Unforced;
@@ -14,7 +14,7 @@ use super::{ContactState, Tangent};
 use crate::hybrid::failure::Reason;
 use crate::hybrid::simulation::Simulation;
 use crate::jets::{ORDERS, Point};
-use crate::model::{Contact, Contacts, Mode, Powers};
+use crate::model::{Contact, Contacts, Mode};
 
 /// Which of the results of the tape of decisions.
 const PUSH: usize = 0;
@@ -36,7 +36,18 @@ pub(super) struct Candidate {
 /// A candidate that may go on.
 pub(super) struct Admitted {
     pub candidate: Candidate,
-    orders: Orders,
+    pub orders: Orders,
+}
+
+/// What is decided about.
+pub(super) struct Case<'p, 'a> {
+    pub contacts: &'p Contacts,
+    pub geometry: &'a Geometry,
+    pub places: &'a ContactValues,
+    /// What touches without a rate, with what its tangent does.
+    pub touching: &'a [Option<Tangent>],
+    /// What contacts do without forces, where that rules sets out.
+    pub unforced: Option<Unforced>,
 }
 
 /// Of each result of the tape of decisions that had to be positive and is zero, which derivative decided, if any did.
@@ -89,122 +100,79 @@ impl<'p> Simulation<'p> {
             Some(unforced) => self.answers((contacts, geometry), places, (touching, unforced)),
             None => Ok(Vec::new()),
         });
-        let unforced = unforced.filter(|_| !contacts.follows_motion);
+        let case = Case {
+            contacts,
+            geometry,
+            places,
+            touching,
+            unforced: unforced.filter(|_| !contacts.follows_motion),
+        };
         // A contact that is to slip whose slip others hold goes on as one that sticks (the same motion, and friction within its
         // bound): such sets are idle, and tried where no other is admitted.
         let mut idle = Vec::new();
         let mut admitted = Vec::new();
-        let mut judge = |states: Vec<ContactState>, idle: Option<&mut Vec<_>>, is_exact: bool| {
-            let sharing = Sharing::new(contacts, geometry, places, &states)?;
-            match idle {
-                Some(idle) if sharing.holds_a_slip(geometry, &states, touching) => {
-                    idle.push(states);
-                    return None;
-                }
-                _ => {}
-            }
-            let is_out = |of: &Unforced| {
-                sharing.is_determined()
-                    && of.rules_out(places, &states, touching, sharing.unknown())
-            };
-            let is_out = unforced.as_ref().is_some_and(is_out);
-            // Tests are built with assertions: there each set is judged.
-            if is_out && !cfg!(debug_assertions) {
-                return None;
-            }
-            let of = (states, sharing, is_exact);
-            let admitted = self.admitted((contacts, geometry), places, touching, of);
-            debug_assert!(
-                !(is_out && admitted.is_some()),
-                "a set that may go on was ruled out"
-            );
-            admitted
-        };
         for states in &sets {
-            admitted.extend(judge(states.clone(), Some(&mut idle), false));
+            admitted.extend(self.judge(&case, states.clone(), (Some(&mut idle), false)));
         }
+        let mut judge = |states, is_exact| self.judge(&case, states, (None, is_exact));
         if admitted.is_empty() {
-            let of_idle = idle
-                .into_iter()
-                .filter_map(|states| judge(states, None, false));
-            admitted.extend(of_idle);
+            admitted.extend(idle.into_iter().filter_map(|states| judge(states, false)));
         }
         if admitted.is_empty() {
             let all = all_of_many(&choices);
-            admitted.extend(all.filter_map(|states| judge(states, None, false)));
+            admitted.extend(all.filter_map(|states| judge(states, false)));
         }
         // Of two forces that are as small as the state's rounding makes them (a block that rests on another, and both fall freely) one may
         // be zero within its bound and fall, and the other below zero beyond its own. Then the state is taken as it is.
         if admitted.is_empty() {
             let taken = sets.into_iter();
-            admitted.extend(taken.filter_map(|states| judge(states, None, true)));
+            admitted.extend(taken.filter_map(|states| judge(states, true)));
         }
-        // Between kinetic and static friction both are admissible: what sticks goes on sticking, and what it held stays closed.
-        let yields = |a: &Admitted, b: &Admitted| {
-            let pairs = || (a.candidate.states.iter().zip(&b.candidate.states)).enumerate();
-            let sticks = |a: &ContactState, b: &ContactState| {
-                matches!((a, b), (ContactState::Slides(_), ContactState::Sticks))
-            };
-            let could = |(k, (a, b)): (usize, (&ContactState, &ContactState))| {
-                sticks(a, b) && places.static_friction(k) > places.kinetic(k)
-            };
-            let opens = |a: &ContactState, b: &ContactState| a.is_closed() != b.is_closed();
-            let differ = |(_, (a, b))| a == b || opens(a, b) || sticks(a, b);
-            pairs().any(could) && pairs().all(differ)
-        };
-        let stays: Vec<bool> = (admitted.iter())
-            .map(|a| !admitted.iter().any(|b| yields(a, b)))
-            .collect();
-        let mut stays = stays.into_iter();
-        admitted.retain(|_| stays.next() == Some(true));
-        if admitted.len() > 1 {
-            let of = (contacts, geometry);
-            self.keep_what_is_forced(of, places, touching, &mut admitted);
-        }
-        // Of equal motions that which holds the most, and of these that whose contacts are the farthest apart: of feet on a line the
-        // outer two, whatever their order.
-        let spans = |a: &Admitted| {
-            let [places, _] = held_lines(contacts, &a.candidate.states);
-            geometry.volume(&places)
-        };
-        admitted.sort_by(|a, b| {
-            let [of_a, of_b] = [a, b].map(|of| of.candidate.holds());
-            of_b.cmp(&of_a).then_with(|| spans(b).total_cmp(&spans(a)))
-        });
-        let present = self.context.discrete().to_vec();
-        let names = |states: &[ContactState]| {
-            let mut discrete = present.clone();
-            write_states(contacts, states, &mut discrete);
-            contacts.sets().name(contacts.set(&discrete))
-        };
-        let touch = || -> Vec<&'static str> {
-            let all = (touching.iter().zip(&contacts.contacts)).filter(|(t, _)| t.is_some());
-            all.map(|(_, c)| c.name).collect()
-        };
-        let Some(first) = admitted.first() else {
-            return Err(Reason::NoMotion { contacts: touch() });
-        };
-        // Where the state is exact; and where it is known to its rounding.
-        let mut differs = |other: &&Admitted| {
-            [true, false].into_iter().all(|is_exact| {
-                let [one, two] =
-                    [first, other].map(|a| self.accelerations(geometry, &a.candidate, is_exact));
-                !are_equal(&one, &two)
-            })
-        };
-        if let Some(other) = admitted[1..].iter().find(&mut differs) {
-            let motions = [first, other].map(|a| names(&a.candidate.states));
-            return Err(Reason::SeveralMotions {
-                contacts: touch(),
-                motions,
-            });
-        }
-        let Admitted { candidate, orders } = admitted.swap_remove(0);
+        let Admitted { candidate, orders } = self.one_motion(&case, admitted)?;
         Ok(Decision {
             states: candidate.states,
             discrete: candidate.discrete,
             orders,
         })
+    }
+
+    /// A set, if it may go on; one that is idle is put aside if that is asked for. The state is known to its rounding, or `is_exact`.
+    pub(super) fn judge(
+        &mut self,
+        case: &Case<'p, '_>,
+        states: Vec<ContactState>,
+        (idle, is_exact): (Option<&mut Vec<Vec<ContactState>>>, bool),
+    ) -> Option<Admitted> {
+        let Case {
+            contacts,
+            geometry,
+            places,
+            touching,
+            ref unforced,
+        } = *case;
+        let sharing = Sharing::new(contacts, geometry, places, &states)?;
+        match idle {
+            Some(idle) if sharing.holds_a_slip(geometry, &states, touching) => {
+                idle.push(states);
+                return None;
+            }
+            _ => {}
+        }
+        let is_out = |of: &Unforced| {
+            sharing.is_determined() && of.rules_out(places, &states, touching, sharing.unknown())
+        };
+        let is_out = unforced.as_ref().is_some_and(is_out);
+        // Tests are built with assertions: there each set is judged.
+        if is_out && !cfg!(debug_assertions) {
+            return None;
+        }
+        let of = (states, sharing, is_exact);
+        let admitted = self.admitted((contacts, geometry), places, touching, of);
+        debug_assert!(
+            !(is_out && admitted.is_some()),
+            "a set that may go on was ruled out"
+        );
+        admitted
     }
 
     /// A set, if it may go on: with some share of the forces that are not determined.
@@ -237,27 +205,6 @@ impl<'p> Simulation<'p> {
             let orders = self.admit(contacts, (&candidate, is_exact), touching)?;
             Some(Admitted { candidate, orders })
         })
-    }
-
-    /// Coefficients of the accelerations of a candidate, of the coordinates that are no multipliers: from the state that is
-    /// given, or from one that is known to its rounding.
-    fn accelerations(
-        &mut self,
-        geometry: &Geometry,
-        candidate: &Candidate,
-        is_exact: bool,
-    ) -> Vec<Powers> {
-        let mode = self.mode();
-        let contacts = mode.contacts.as_ref().expect("a mode of all sets");
-        let at = point(&self.next, self.here.q.len(), &candidate.discrete);
-        let sizes = [&*self.sizes, &*self.rate_sizes];
-        let sizes = (!is_exact).then_some(sizes);
-        self.expansion.begin(mode, at, sizes);
-        for order in 0..ORDERS {
-            self.expansion.expand(mode, &contacts.decisions, order);
-        }
-        let own = geometry.own.iter();
-        own.map(|&i| *self.expansion.acceleration(i)).collect()
     }
 
     /// The forces of a candidate; `None` if they are not known.
@@ -418,19 +365,6 @@ pub(super) fn point<'a>(next: &'a [f64], coordinates: usize, discrete: &'a [f64]
     }
 }
 
-impl Candidate {
-    /// How much it holds: contacts that are closed, then those that stick.
-    fn holds(&self) -> (usize, usize) {
-        let closed = self.states.iter().filter(|s| s.is_closed()).count();
-        let sticks = self
-            .states
-            .iter()
-            .filter(|s| **s == ContactState::Sticks)
-            .count();
-        (closed, sticks)
-    }
-}
-
 /// What must be positive for a candidate to go on: results of the tape of decisions, each with its sign.
 fn asked(
     contacts: &Contacts,
@@ -485,16 +419,4 @@ fn choices(contacts: &Contacts, touching: &[Option<Tangent>]) -> Vec<Vec<Contact
         choices
     };
     contacts.contacts.iter().zip(touching).map(of).collect()
-}
-
-/// Whether two motions are equal, as far as rounding tells.
-fn are_equal(one: &[Powers], other: &[Powers]) -> bool {
-    one.iter().zip(other).all(|(a, b)| {
-        let is_same = |k: usize| {
-            let error = a[k].error + b[k].error;
-            let differ = (a[k].value - b[k].value).abs() > error;
-            !differ
-        };
-        (0..ORDERS).all(is_same)
-    })
 }

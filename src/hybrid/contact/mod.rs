@@ -9,6 +9,7 @@
 //! - `singular`: how well the forces are determined that hold them.
 //! - `judge`: all sets of states that may follow, each tried on the accelerations and higher derivatives that it leads to.
 //! - `forced`: of these, those in which nothing slips that would hold.
+//! - `motions`: of those that may go on, the one whose motion follows, or that there is none, or several.
 //! - `unforced`: what contacts would do without forces, and which sets that rules out before they are judged.
 //! - `share`: how those that stick share forces that are not determined.
 //! - `many`: which of them are tried where these are too many; `pivoting`: what the accelerations say of that.
@@ -31,6 +32,7 @@ mod impact;
 mod judge;
 mod limit;
 mod many;
+mod motions;
 mod phase;
 mod pivoting;
 mod share;
