@@ -37,15 +37,18 @@ def _impulses(model):
     if model.modes[0].form is not None:
         yield from (c.extra["impulse"] for c in model.coordinates if "impulse" in c.extra)
         return
-    unit = lambda expression, is_rate: units.of_impulse(units.force(units.dimension_of(expression, model.dimensions), is_rate))
+    def along(name, expression, is_rate, meaning, location):
+        unit = units.of_impulse(units.force(units.dimension_of(expression, model.dimensions), is_rate))
+        return Impulse(name, unit, meaning, location, expression, is_rate)
+
     for contact in model.contacts:
         if contact.gap is not None:
-            yield Impulse(contact.impulse_name, unit(contact.gap_expression, contact.is_ratchet), "impulse of the normal force", contact.location)
+            yield along(contact.impulse_name, contact.gap_expression, contact.is_ratchet, "impulse of the normal force", contact.location)
         if contact.slip is not None:
-            yield Impulse(contact.friction_impulse_name, unit(contact.slip_expression, contact.slips_by_rate),
-                          "impulse of the friction force", contact.location)
+            yield along(contact.friction_impulse_name, contact.slip_expression, contact.slips_by_rate, "impulse of the friction force",
+                        contact.location)
     for constraint in model.constraints:
-        yield Impulse(constraint.impulse_name, unit(constraint.expression, constraint.is_rate), "impulse of the force", constraint.location)
+        yield along(constraint.impulse_name, constraint.expression, constraint.is_rate, "impulse of the force", constraint.location)
 
 
 def _of_contact(model, contact):

@@ -13,7 +13,7 @@
 #include <stdint.h>
 
 /* Changes whenever something below or in the description does. */
-#define DALEMBERT_CONTRACT_VERSION 13
+#define DALEMBERT_CONTRACT_VERSION 14
 #define DALEMBERT_CONTRACT_MARK {'d', 'a', 'l', 'e', 'm', 'b', 'r', 't'}
 
 /* What a function needs besides the free coordinates of its mode. Angles: sines and cosines computed last. */

@@ -52,6 +52,10 @@ class Impulse:
     unit: str
     meaning: str
     location: str
+    expression: ca.SX
+    """What it acts along: a gap, a slip or a constraint."""
+    is_rate: bool
+    """Whether that is a rate."""
     multiplier: ca.SX = None
     """The multiplier whose rate it is since the start; None in the reduced form."""
 

@@ -344,6 +344,15 @@ class ModeEquations:
         x = configuration(self.model)
         return ca.densify(self.freeze(ca.jacobian(kinetic_energy(self.model), x.v).T))
 
+    def carried(self):
+        """Rates of what impulses act along where no coordinate moves: those of walls, belts and constraints that do."""
+        x = configuration(self.model)
+        rates = [c.symbol.rate for c in self.model.coordinates]
+        at_rest = Substitution(rates, [ca.SX(0)] * len(rates))
+        return ca.vertcat(ca.SX(0, 1), *[
+            self.freeze(at_rest(ca.SX(impulse.expression if impulse.is_rate else ca.jtimes(impulse.expression, x.q, x.v))))
+            for impulse in self.model.impulses])
+
     def powers(self):
         """Dissipated power and input power.
 

@@ -151,6 +151,8 @@ MODE = (
     Row("accelerations", lambda of: of.equations.all_accelerations(), "their accelerations"),
     Row("roundings", lambda of: of.equations.roundings(), "hybrid::start", is_counted=True,
         exists=lambda of: bool(of.equations.mode.lines)),
+    Row("carried", lambda of: of.equations.carried(), "the ledger, at impacts on walls that move", is_counted=True,
+        exists=lambda of: not of.equations.carried().is_zero()),
     Row("contact_values", lambda of: of.equations.contact_values(), "hybrid::contact::hold", is_counted=True,
         exists=lambda of: of.equations.mode.form is not None),
     Row("lines", lambda of: of.equations.lines(), "hybrid::contact::geometry", is_counted=True,

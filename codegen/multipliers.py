@@ -202,7 +202,7 @@ def _multiplier(model, name, expression, is_rate, meaning, declared, impulse):
     symbol.jerk = ca.SX.sym(name + ".jerk")
     model.coordinates.append(Declaration(name, unit, meaning + ", integrated over time", symbol, dict(
         minimum=None, maximum=None, scale=1.0, rate_scale=1.0, multiplier=units.of_force(force),
-        impulse=Impulse(impulse, units.of_impulse(force), meaning, declared.location, symbol))))
+        impulse=Impulse(impulse, units.of_impulse(force), meaning, declared.location, expression, is_rate, symbol))))
     return symbol
 
 

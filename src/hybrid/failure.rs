@@ -127,6 +127,18 @@ pub enum Reason {
         /// What is held by the force.
         of: &'static str,
     },
+    /// The motion goes to infinity within a time that is none.
+    #[error(
+        "mode `{mode}`: the motion goes to infinity here: `{coordinate}.rate` is {rate:.1e}, and steps do not advance the time any more; a stop, a constraint or a prescribed motion drives the system to where it has no way on (a linkage at its reach), or a force has a pole"
+    )]
+    Runaway {
+        /// Mode.
+        mode: &'static str,
+        /// The coordinate that is the fastest, against its typical rate.
+        coordinate: &'static str,
+        /// Its rate, in its unit ÷ s.
+        rate: f64,
+    },
     /// The model needs a mode that the scene left out by freezing a coordinate.
     #[error("no mode is left in which {} may be frozen", frozen.join(", "))]
     NoModeLeft {

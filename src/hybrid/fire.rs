@@ -49,9 +49,10 @@ impl<'p> Simulation<'p> {
         let t = self.chosen(kernel, (guard, decided))?;
         let (mode, fired) = (self.here.mode, &self.mode().guards[guard]);
         let transition = &fired.transitions[t];
-        let said = (self.problem.record.event_states)
-            .then(|| self.impulses(kernel, transition))
-            .flatten();
+        let said = self
+            .asks_impulses()
+            .then(|| self.impulses(kernel, transition));
+        let said = said.flatten();
         let taken = (transition.name, transition.impact);
         self.commit_with(taken, transition.target, said)?;
         self.note_closed(mode, (guard, taken.1));
@@ -201,7 +202,8 @@ impl<'p> Simulation<'p> {
     ) -> Stoppable<()> {
         let from = self.here.shown;
         let states = self.problem.record.event_states;
-        let before = states.then(|| (self.snapshot(), self.impulses_so_far()));
+        let before = states.then(|| self.snapshot());
+        let so_far = self.asks_impulses().then(|| self.impulses_so_far());
         let energies_before = (self.observers.ledger.is_some() || states)
             .then(|| (self.stored_energy(), self.ground_momenta()));
         self.leave_for_next();
@@ -216,7 +218,19 @@ impl<'p> Simulation<'p> {
             with_kernel!(&mode.kernels, k => self.set_accelerations(k))?;
         }
 
-        let energy = energies_before.map(|before| self.energy_jump(before));
+        let impulses: Option<Vec<f64>> = so_far.map(|so_far| {
+            let added = || {
+                let now = self.impulses_so_far().into_iter();
+                // Where nothing strikes they differ by what brings rates back to what is held.
+                let change = |(now, before)| if impact { now - before } else { 0.0 };
+                now.zip(so_far).map(change).collect()
+            };
+            said.unwrap_or_else(added)
+        });
+        let energy = energies_before.map(|before| {
+            let of_impact = impulses.as_deref().filter(|_| impact);
+            self.energy_jump(before, of_impact.unwrap_or_default())
+        });
         if let (Some(ledger), Some(jump)) = (&mut self.observers.ledger, energy) {
             ledger.add_jump(jump);
         }
@@ -228,15 +242,9 @@ impl<'p> Simulation<'p> {
             to: self.here.shown,
             energy: energy.filter(|_| impact),
         };
-        if let Some((before, so_far)) = before {
+        if let Some(before) = before {
             let after = self.snapshot();
-            let added = || {
-                let now = self.impulses_so_far().into_iter();
-                // Where nothing strikes they differ by what brings rates back to what is held.
-                let change = |(now, before)| if impact { now - before } else { 0.0 };
-                now.zip(so_far).map(change).collect()
-            };
-            let impulses = said.unwrap_or_else(added);
+            let impulses = impulses.unwrap_or_default();
             if self.observers.watch_extremes() {
                 let stored = self.stored_energy();
                 self.observers
@@ -252,6 +260,15 @@ impl<'p> Simulation<'p> {
             self.observers.recording.event(&jump, None);
         }
         self.arrive(name, from)
+    }
+
+    /// Whether somebody asks for the impulses of a transition: who records states, or the ledger where what they act along moves by itself.
+    fn asks_impulses(&self) -> bool {
+        let counts = || {
+            let mode = self.mode();
+            with_kernel!(&mode.kernels, k => k.is_carried())
+        };
+        self.problem.record.event_states || self.observers.ledger.is_some() && counts()
     }
 
     /// The impulses since the start, as far as multipliers tell them; 0 where they do not.
@@ -274,7 +291,7 @@ impl<'p> Simulation<'p> {
         self.leave_for_next();
         if let Some(before) = before {
             self.set_context();
-            let jump = self.energy_jump(before);
+            let jump = self.energy_jump(before, &[]);
             if let Some(ledger) = &mut self.observers.ledger {
                 ledger.add_jump(jump);
             }
@@ -315,16 +332,21 @@ impl<'p> Simulation<'p> {
         }
     }
 
-    /// The jump of the energy from what it was before. The impulse of the ground on the system works
-    /// on the velocity of the ground.
+    /// The jump of the energy from what it was before, with the impulses of an impact as far as they are known. The impulse of the ground
+    /// on the system works on the velocity of the ground; and what an impulse acts along may move by itself (a wall, a belt): that
+    /// works against it.
     pub(in crate::hybrid) fn energy_jump(
         &self,
         (before, momenta_before): (f64, Vec<(f64, f64)>),
+        impulses: &[f64],
     ) -> EnergyJump {
-        let impulses = self.ground_momenta().into_iter().zip(momenta_before);
-        let ground_work: f64 = impulses
-            .map(|((after, rate), (before, _))| (after - before) * rate)
-            .sum();
+        let of_ground = self.ground_momenta().into_iter().zip(momenta_before);
+        let of_ground = of_ground.map(|((after, rate), (before, _))| (after - before) * rate);
+        let of_carried = impulses
+            .iter()
+            .zip(self.carried())
+            .map(|(impulse, rate)| -impulse * rate);
+        let ground_work: f64 = of_ground.chain(of_carried).sum();
         let after = self.stored_energy();
         let lost = before - after + ground_work;
         // A difference of three numbers is told from zero only above their rounding.
@@ -345,6 +367,15 @@ impl<'p> Simulation<'p> {
             .map_err(|s| Reason::singular(mode, &self.problem.model, s))?;
         self.set_here(kernel, [&q, &v, &a]);
         Ok(())
+    }
+
+    /// Rates of what impulses act along where no coordinate moves; none where nothing is carried.
+    fn carried(&self) -> Vec<f64> {
+        let mode = self.mode();
+        with_kernel!(&mode.kernels, k => {
+            let [q, v, a] = self.here.free(k.size(), &mode.free);
+            k.carried(&self.context, Free { q: &q, v: &v, a: &a })
+        })
     }
 
     /// Momentum along each motion of the ground, with the velocity of that motion.

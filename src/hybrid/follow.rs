@@ -19,6 +19,10 @@ use crate::numerics::Vector;
 use crate::run::Progress;
 use std::ops::ControlFlow;
 
+/// Steps in a row that do not advance the time as a double, at most: from the shortest that an instant tells from none, 2⁻¹⁰⁶ of the time, they
+/// grow to its last place in 54 doublings, by either method.
+const MOST_IDLE: u32 = 2 * 54;
+
 impl Simulation<'_> {
     /// Integrates until something happens, from the start of a segment, or from where it `goes_on` after a pause. The life of a
     /// step:
@@ -278,6 +282,7 @@ impl Simulation<'_> {
             }
             let at = free_of(&state);
 
+            let advances = start.plus(state.t).seconds() > self.here.now.seconds();
             self.here.now = start.plus(state.t);
             self.here
                 .set_free(&mode.free, [&state.q, &state.v, &state.a]);
@@ -332,10 +337,15 @@ impl Simulation<'_> {
             }
             // 11. Whether the segment ends.
             if let Some(guard) = event {
+                self.idle_steps = 0;
                 if chooses && !is_explicit {
                     stiffness.implicit_step(h);
                 }
                 return Ok(Stop::Event(guard));
+            }
+            self.idle_steps = if advances { 0 } else { self.idle_steps + 1 };
+            if self.idle_steps > MOST_IDLE {
+                return Err(Box::new(self.runaway()));
             }
             self.signs.go_on();
             if chooses && !is_explicit {
@@ -365,6 +375,28 @@ impl Simulation<'_> {
                 self.pause.keep_start(&mode.free, &began);
                 return Ok(Stop::Pause);
             }
+        }
+    }
+}
+
+impl Simulation<'_> {
+    /// Why steps do not advance the time any more.
+    #[cold]
+    fn runaway(&self) -> Reason {
+        let mode = self.mode();
+        let is_own = |i: &&usize| {
+            mode.contacts
+                .as_ref()
+                .is_none_or(|of| !of.is_multiplier(**i))
+        };
+        let speed = |i: usize| self.here.v[i].abs() / self.rate_sizes[i];
+        let own = mode.free.iter().filter(is_own);
+        let fastest = own.max_by(|&&a, &&b| speed(a).total_cmp(&speed(b)));
+        let fastest = *fastest.expect("what moves has a coordinate");
+        Reason::Runaway {
+            mode: mode.name,
+            coordinate: self.problem.model.coordinates[fastest].name,
+            rate: self.here.v[fastest],
         }
     }
 }

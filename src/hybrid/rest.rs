@@ -220,7 +220,7 @@ impl<'p> Simulation<'p> {
             let (before, mode) = (self.here.now, self.mode());
             let work = with_kernel!(&mode.kernels, k => self.go_on_to(k, before, limit.at))?;
             let (q, v) = limit.state.split_at(n);
-            self.take_limit([q, v], work);
+            self.take_limit([q, v], (work, &[]));
         }
         self.here.now = limit.at;
         self.here.q.copy_from_slice(&limit.state[..n]);
@@ -276,14 +276,14 @@ impl<'p> Simulation<'p> {
     }
 
     /// Takes coordinates and rates at a limit, where all impacts that are left happen at once. The ledger has the energy that they lose,
-    /// and the work till there.
-    pub(super) fn take_limit(&mut self, [q, v]: [&[f64]; 2], work: [f64; 2]) {
+    /// and the work till there; with the impulses of these impacts, where they are known.
+    pub(super) fn take_limit(&mut self, [q, v]: [&[f64]; 2], (work, impulses): ([f64; 2], &[f64])) {
         let energies = (self.observers.ledger.is_some())
             .then(|| (self.stored_energy(), self.ground_momenta()));
         self.here.q.copy_from_slice(q);
         self.here.v.copy_from_slice(v);
         self.set_context();
-        let jump = energies.map(|before| self.energy_jump(before));
+        let jump = energies.map(|before| self.energy_jump(before, impulses));
         if let (Some(ledger), Some(jump)) = (&mut self.observers.ledger, jump) {
             ledger.add_work(work);
             ledger.add_jump(jump);

@@ -480,7 +480,22 @@ impl<F: Size> ModeKernel<F> {
     /// What, times the unit roundoff, bounds the rounding of all coordinates that depend on others, then of their rates; 0 of
     /// those that do not. Empty where none does.
     pub fn roundings(&self, x: &Context, at: Free<F>) -> Vec<f64> {
-        let Some((function, count)) = self.roundings else {
+        self.counted(self.roundings, x, at)
+    }
+
+    /// Rates of what impulses act along where no coordinate moves: those of walls, belts and constraints that do. Empty where none moves.
+    pub fn carried(&self, x: &Context, at: Free<F>) -> Vec<f64> {
+        self.counted(self.carried, x, at)
+    }
+
+    /// Whether walls, belts or constraints move along which impulses act.
+    pub fn is_carried(&self) -> bool {
+        self.carried.is_some()
+    }
+
+    /// What a function gives that says how many results it has; nothing where there is none.
+    fn counted(&self, function: Option<(Raw, usize)>, x: &Context, at: Free<F>) -> Vec<f64> {
+        let Some((function, count)) = function else {
             return Vec::new();
         };
         let mut out = vec![0.0; count];

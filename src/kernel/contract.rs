@@ -4,7 +4,7 @@ use super::raw::{Raw, RawRun, RawStart};
 use thiserror::Error;
 
 /// Version of the contract that this engine speaks: `DALEMBERT_CONTRACT_VERSION`.
-pub const CONTRACT_VERSION: u32 = 13;
+pub const CONTRACT_VERSION: u32 = 14;
 
 /// What a model begins with: `DALEMBERT_CONTRACT_MARK`.
 pub(crate) const MARK: [u8; 8] = *b"dalembrt";

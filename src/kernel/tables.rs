@@ -143,6 +143,8 @@ pub struct ModeKernel<F: Size> {
     pub(crate) contact_values: Option<(Raw, usize)>,
     /// The same of their lines.
     pub(crate) lines: Option<(Raw, usize)>,
+    /// Of what impulses act along, where walls, belts or constraints move.
+    pub(crate) carried: Option<(Raw, usize)>,
     /// Of what the mode holds and depends on what is free.
     pub(crate) roundings: Option<(Raw, usize)>,
     /// By level of the processor; none where the mode does not go in lanes.

@@ -184,7 +184,7 @@ impl<'p> Simulation<'p> {
             let added = |i: usize| self.next[n + i] - self.here.v[i];
             impulse.multiplier.map_or(0.0, added)
         };
-        let told = self
+        let told: Vec<f64> = self
             .problem
             .variant()
             .impulses
@@ -192,7 +192,7 @@ impl<'p> Simulation<'p> {
             .map(of_limit)
             .collect();
         let rates = self.here.v.to_vec();
-        self.take_limit([&limit.state[..n], &rates], work);
+        self.take_limit([&limit.state[..n], &rates], (work, &told));
         Ok(told)
     }
 }

@@ -4,9 +4,9 @@ use crate::numerics::persist;
 use crate::run::{EnergyJump, Ledger};
 
 /// Sentence about the frame, for the summary.
-const FRAME: &str = "inertial frame in which the ground is at rest at t = 0; a landing on moving \
-    ground does work there, which is counted as input work, so that `lost_at_impacts` is the loss \
-    in the frame of the ground";
+const FRAME: &str = "inertial frame in which the ground is at rest at t = 0; ground, walls and belts \
+    that move do work at an impact, which is counted as input work, so that `lost_at_impacts` is the \
+    loss in the frame of what is struck";
 
 /// A sum that carries what rounding loses (Neumaier 1974).
 #[derive(Debug, Clone, Copy, Default)]

@@ -72,6 +72,7 @@ impl Reader<'_> {
             outputs: counts.outputs,
             requirements: counts.required,
             contact_values: at.get("contact_values", |at| at.option(|at| self.counted(at)))?,
+            carried: at.get("carried", |at| at.option(|at| self.counted(at)))?,
             lines: at.get("lines", |at| at.option(|at| self.counted(at)))?,
             roundings: at.get("roundings", |at| at.option(|at| self.counted(at)))?,
             series: series("series")?,
