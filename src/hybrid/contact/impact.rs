@@ -37,6 +37,8 @@ pub(super) struct Impact<'a> {
     pub contacts: &'a Contacts,
     pub geometry: &'a Geometry,
     pub places: &'a ContactValues,
+    /// Rates of the coordinates that are no multipliers, before it.
+    pub came: &'a [f64],
     pub collisions: Collisions,
     /// Of each contact, whether it touches.
     pub touches: &'a [bool],
@@ -138,6 +140,7 @@ impl Impact<'_> {
             contacts: self.contacts,
             geometry: self.geometry,
             places: self.places,
+            came: self.came,
             rates,
             members,
         }

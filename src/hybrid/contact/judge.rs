@@ -50,8 +50,14 @@ pub(super) struct Case<'p, 'a> {
     pub unforced: Option<Unforced>,
 }
 
-/// Of each result of the tape of decisions that had to be positive and is zero, which derivative decided, if any did.
-pub(super) type Orders = Vec<(usize, usize)>;
+/// How results of the tape of decisions that had to be positive became so.
+#[derive(Debug, Default)]
+pub(super) struct Orders {
+    /// Of each that is zero, which derivative decided, if any did.
+    decided: Vec<(usize, usize)>,
+    /// Whether each was decided.
+    pub are_known: bool,
+}
 
 /// What was found.
 pub(super) struct Decision {
@@ -73,7 +79,11 @@ impl Decision {
 
     fn vanishing(&self, k: usize, what: usize) -> usize {
         let index = k * Contacts::DECISIONS + what;
-        let of = self.orders.iter().find(|(known, _)| *known == index);
+        let of = self
+            .orders
+            .decided
+            .iter()
+            .find(|(known, _)| *known == index);
         of.map_or(0, |(_, order)| *order)
     }
 }
@@ -258,7 +268,7 @@ impl<'p> Simulation<'p> {
         expansion.begin(mode, at, (!is_exact).then_some(sizes));
         expansion.expand(mode, tape, 0);
         let mut open = Vec::new();
-        let mut orders = Vec::new();
+        let mut decided = Vec::new();
         for (index, sign) in asked {
             let value = expansion.result(tape, index)[0];
             // A force that is not known is none.
@@ -286,7 +296,7 @@ impl<'p> Simulation<'p> {
                 |&(index, sign)| match expansion.result(tape, index)[k].sign() {
                     Some(positive) => {
                         falls |= positive != (sign > 0.0);
-                        orders.push((index, k));
+                        decided.push((index, k));
                         false
                     }
                     None => true,
@@ -296,7 +306,8 @@ impl<'p> Simulation<'p> {
                 return None;
             }
         }
-        Some(orders)
+        let are_known = open.is_empty();
+        Some(Orders { decided, are_known })
     }
 
     /// Whether the slips that others are to hold do stay zero. Where lines depend on each other at this position alone, as a mechanism

@@ -41,6 +41,10 @@ impl<'p> Simulation<'p> {
                 admitted = exact;
             }
         }
+        if self.another(case, &admitted).is_some() && admitted.iter().any(|a| a.orders.are_known) {
+            // What no derivative tells from zero gives way to what is told.
+            admitted.retain(|a| a.orders.are_known);
+        }
         let touch = || -> Vec<&'static str> {
             let all = case.touching.iter().zip(&case.contacts.contacts);
             all.filter(|(t, _)| t.is_some())

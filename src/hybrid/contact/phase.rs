@@ -100,7 +100,9 @@ pub(super) struct Phase<'a> {
     pub contacts: &'a Contacts,
     pub geometry: &'a Geometry,
     pub places: &'a ContactValues,
-    /// Rates before it, of all lines.
+    /// Rates of the coordinates that are no multipliers, before the impact.
+    pub came: &'a [f64],
+    /// Rates before the phase, of all lines.
     pub rates: &'a OfLines,
     pub members: &'a [Member],
 }
@@ -143,8 +145,9 @@ impl Phase<'_> {
         found
     }
 
-    /// Whether two outcomes lead to the same rates, as far as rounding tells: by their own bounds, or by that of elimination in
-    /// the metric of the masses, since the bounds do not see what elimination leaves where a heavy body stays.
+    /// Whether two outcomes lead to the same rates, as far as rounding tells: by their own bounds, or in the metric of the masses by that of
+    /// elimination, since the bounds do not see what it leaves where a heavy body stays; or by that of the rates that come, of which
+    /// those of contacts may be nothing but roundings.
     fn are_same(&self, one: &Outcome, other: &Outcome) -> bool {
         let pairs = || one.change.iter().zip(&other.change);
         if pairs().all(|(a, b)| (a.value - b.value).abs() <= a.error + b.error) {
@@ -154,7 +157,8 @@ impl Phase<'_> {
         let values = |outcome: &Outcome| outcome.change.iter().map(|a| a.value).collect();
         let [one, other]: [Vec<f64>; 2] = [values(one), values(other)];
         let relative = roundings(one.len() + self.members.len()) * ROUNDOFF;
-        let size = self.energy(&one).max(self.energy(&other));
+        let sizes = [&one, &other, self.came].map(|rates| self.energy(rates));
+        let size = sizes.into_iter().fold(0.0, f64::max);
         self.energy(&difference) <= relative * relative * size
     }
 

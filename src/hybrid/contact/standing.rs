@@ -55,6 +55,11 @@ impl Standing {
         [places, rates]
     }
 
+    /// Rates of the coordinates that are no multipliers.
+    pub fn own_rates(&self) -> Vec<f64> {
+        self.geometry.own.iter().map(|&i| self.v[i]).collect()
+    }
+
     /// Takes over what an impact of the contacts that touch does.
     pub fn take(&mut self, contacts: &Contacts, touches: &[bool], impact: Impacted) {
         for (&i, change) in self.geometry.own.iter().zip(&impact.change) {
