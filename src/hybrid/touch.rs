@@ -110,7 +110,8 @@ pub(super) fn fallen<'a, F: Size>(
         // The event of the other guard leaves nothing of the step.
         return Ok(None);
     }
-    let mut at_end = None;
+    // The first of all: what falls later is looked for up to there.
+    let (mut end, mut first) = (end, None);
     for (i, &watched) in watched.iter().enumerate() {
         let found = &signs.found[i];
         let is_negative = found.watch == Watch::Violated && found.crossing.is_none();
@@ -119,15 +120,15 @@ pub(super) fn fallen<'a, F: Size>(
         if !(signs.away[i] > 0.0 && (is_negative || rises)) {
             continue;
         }
-        let at_end = at_end.get_or_insert_with(|| match end < method.end() {
+        let at_end = match end < method.end() {
             true => {
                 let [q, v, a] = guards::motion(equations, method.motion(), end, true);
                 State { t: end, q, v, a }
             }
             false => method.state().clone(),
-        });
+        };
         let guard = (&mode.guards[watched.guard], watched);
-        let falls_at_end = falls_below(equations, conditions, guard, at_end);
+        let falls_at_end = falls_below(equations, conditions, guard, &at_end);
         if !(falls_at_end || has_sunk(method, equations, conditions, guard, end)) {
             continue;
         }
@@ -137,39 +138,43 @@ pub(super) fn fallen<'a, F: Size>(
         } else {
             TAYLOR * (end - start)
         };
-        let state = loop {
+        loop {
             let tau = (start + length).min(end);
             // A length that rounding does not tell from nothing grows.
             if tau > start {
                 if method.end() != tau {
                     method.step_exactly(equations, tau - start)?;
                 }
-                let state = method.state();
-                if falls_below(equations, conditions, guard, state) {
-                    break Some(state.clone());
+                let falls = falls_below(equations, conditions, guard, method.state());
+                if falls || tau >= end && falls_at_end {
+                    (end, first) = (tau, Some(i));
                 }
-                if tau >= end {
-                    break falls_at_end.then(|| state.clone());
+                if falls || tau >= end {
+                    break;
                 }
             }
             length *= 2.0;
-        };
-        let Some(state) = state else { continue };
-        // What happens later is the next segment's.
-        signs
-            .found
-            .iter_mut()
-            .for_each(|found| found.crossing = None);
-        signs.found[i].crossing = Some(Crossing {
-            inside: method.end(),
-            outside: method.end(),
-            kind: Kind::Crossing,
-        });
-        signs.found[i].turn = 0.0;
-        signs.unseen = true;
-        return Ok(Some((watched.guard, state)));
+        }
     }
-    Ok(None)
+    let Some(i) = first else {
+        return Ok(None);
+    };
+    if method.end() != end {
+        method.step_exactly(equations, end - start)?;
+    }
+    // What happens later is the next segment's.
+    signs
+        .found
+        .iter_mut()
+        .for_each(|found| found.crossing = None);
+    signs.found[i].crossing = Some(Crossing {
+        inside: method.end(),
+        outside: method.end(),
+        kind: Kind::Crossing,
+    });
+    signs.found[i].turn = 0.0;
+    signs.unseen = true;
+    Ok(Some((watched[i].guard, method.state().clone())))
 }
 
 /// Whether a guard is negative at a state, and falls.

@@ -207,7 +207,7 @@ fn event_columns(layout: &Layout) -> Vec<Described> {
     for (name, meaning) in [
         (
             "lost",
-            "energy lost at the impact, in the frame of the ground",
+            "energy lost at the impact, in the frame of what is struck",
         ),
         (
             "ground_work",

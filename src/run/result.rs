@@ -161,7 +161,7 @@ pub struct Snapshot {
 /// `ground_work − lost`.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct EnergyJump {
-    /// Energy lost, in the frame of the ground (J); negative where the impact law creates energy.
+    /// Energy lost, in the frame of what is struck (J); negative where the impact law creates energy.
     pub lost: f64,
     /// Work of the ground's impulse under the ground's own motion, in the inertial frame (J).
     pub ground_work: f64,
@@ -209,7 +209,7 @@ pub struct Ledger {
     pub dissipated: f64,
     /// Work of the prescribed motions and forces, impulses of a moving ground included (J).
     pub input_work: f64,
-    /// Energy lost at impacts, in the frame of the ground (J).
+    /// Energy lost at impacts, in the frame of what is struck (J).
     pub lost_at_impacts: f64,
     /// A sentence that says in which frame the ledger is kept.
     pub frame: String,

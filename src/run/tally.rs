@@ -27,7 +27,7 @@ pub struct Counted {
 pub struct Impacts {
     /// Number of impacts.
     pub count: usize,
-    /// Energy lost in all, in the frame of the ground (J).
+    /// Energy lost in all, in the frame of what is struck (J).
     pub lost: f64,
     /// Number of impacts that gained energy.
     pub gaining: usize,
@@ -48,7 +48,7 @@ pub struct Gain {
     pub j: u64,
     /// Name of the transition.
     pub transition: String,
-    /// Energy gained, in the frame of the ground (J).
+    /// Energy gained, in the frame of what is struck (J).
     pub energy: f64,
 }
 

@@ -255,6 +255,17 @@ fn move_alike(
     }
     let [(one, a), (other, b)] =
         ["reduced", "multipliers"].map(|form| run(folder.path(), form, scene));
+    let stops = |run: &serde_json::Value| {
+        let reason = run["failure"]["reason"].as_str()?;
+        reason
+            .contains("goes to infinity")
+            .then(|| run["failure"]["t"].as_f64().unwrap())
+    };
+    if let (Some(a), Some(b)) = (stops(&one), stops(&other)) {
+        // There is no telling numbers there.
+        assert!((a - b).abs() <= 1e-7 * a, "{a} s and {b} s in {of}");
+        return (0, false);
+    }
     assert_eq!(one["failure"], other["failure"], "{of}");
     for (a, b) in a.iter().zip(&b) {
         assert!(

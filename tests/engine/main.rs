@@ -33,6 +33,7 @@ mod lines;
 mod linkages;
 mod mechanisms;
 mod methods;
+mod moving_walls;
 mod multipliers;
 mod newmark;
 mod onsets;

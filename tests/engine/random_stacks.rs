@@ -9,9 +9,20 @@ use dalembert::record::{Run, Silent};
 /// Stacks in the suite.
 const SHARE: u64 = 30;
 
-/// Others, in which accumulations accumulate (214, 246), a contact touches beside another that rests (408), both blocks fall freely while
-/// one rests on the other (502), and Newton's iteration ended too soon (119).
-const ALSO: [u64; 5] = [119, 214, 246, 408, 502];
+/// Others, and up to when, s. In them accumulations accumulate (214, 246), a contact touches beside another that rests (408), both
+/// blocks fall freely while one rests on the other (502, 916), Newton's iteration ended too soon (119), outcomes of an impact differ by
+/// roundings (245, 430), and two gaps fall that were not seen to rise (1947).
+const ALSO: [(u64, f64); 9] = [
+    (119, 1.0),
+    (214, 1.0),
+    (245, 1.0),
+    (246, 1.0),
+    (408, 1.0),
+    (430, 1.0),
+    (502, 1.0),
+    (916, 1.0),
+    (1947, 0.021),
+];
 
 const G: f64 = 9.81;
 
@@ -151,9 +162,11 @@ fn random_stacks_of_blocks_keep_all_laws() {
     let from = asked("DALEMBERT_FROM").unwrap_or(0);
     let only = asked("DALEMBERT_RANDOM_SCENE");
     let (mut events, mut stops) = (0, Vec::new());
-    let numbers = only.map_or_else(|| (from..share).chain(ALSO).collect(), |n| vec![n]);
-    for number in numbers {
+    let whole = |number: u64| (number, 1.0);
+    let all = || (from..share).map(whole).chain(ALSO).collect();
+    for (number, end) in only.map_or_else(all, |number| vec![whole(number)]) {
         let mut stack = Stack::random(&mut Random(number));
+        stack.problem.end.time = end;
         // Along the ground's motion steps are off by parts of a tolerance; where contacts close the implicit method is off by one.
         let methods = [
             (Method::Taylor, [1e-11, 1e-10, 1e-11, 0.0]),
@@ -172,7 +185,7 @@ fn random_stacks_of_blocks_keep_all_laws() {
             stack.check(&run, &of, within);
             events += run.events.len();
             if let Some(failure) = &run.failure {
-                let is_known = number >= SHARE && !ALSO.contains(&number);
+                let is_known = number >= SHARE && !ALSO.contains(&(number, end));
                 assert!(is_known, "{of}: {}", failure.reason);
                 stops.push(format!("{of}: {}", failure.reason));
             }
