@@ -28,8 +28,12 @@ class Functions(ScratchTest):
         # One that holds along a line has what modes with multipliers have not.
         held = self.described(HEAD + 'y = model.coordinate("y", "m", "height")\nmodel.point_mass(m, position=(x, y))\n'
                               'model.constraint("line", x + y)\n')["variants"][0]["modes"][0]
+        # Of walls that move alone impulses are carried.
+        moved = self.described(HEAD + 'z = model.motion("z", "a wall", input="a")\nmodel.point_mass(m, position=(x, 0 * x))\n'
+                               'model.contact("wall", gap=x - z)\n')["variants"][0]["modes"][0]
+        self.assertIsNone(mode["kernel"]["carried"])
         for row in functions.OF_EACH_MODE:
-            kernel = held["kernel"] if row.name == "roundings" else mode["kernel"]
+            kernel = {"roundings": held, "carried": moved}.get(row.name, mode)["kernel"]
             self.assertIsNotNone(kernel[row.name], row.name)
         guard = mode["guards"][-1]
         for row in functions.GUARD:

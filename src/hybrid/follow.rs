@@ -6,7 +6,7 @@ use super::doubt::Searched;
 use super::equations::{Clock, Equations, free_of};
 use super::failure::{Reason, Stoppable};
 use super::guards::Conditions;
-use super::inertia::vanished;
+use super::inertia::{VANISHED, VANISHES, vanished};
 use super::instant::Instant;
 use super::margins::Ended;
 use super::observe::Step;
@@ -107,9 +107,9 @@ impl Simulation<'_> {
         let determinant = mass_changes
             .then(|| sign(equations.context, &began))
             .flatten();
-        let vanished = |context: &Context, now: &State<F>| {
+        let vanished = |context: &Context, now: &State<F>, part: f64| {
             let states = [&began, now].map(|state| [&state.q, &state.v]);
-            vanished(kernel, context, (problem, mode), states)
+            vanished(kernel, context, (problem, mode), (states, part))
         };
         let watches = self.margins.watches(mode);
         let stiffness = &mut self.stiffness[self.here.mode];
@@ -121,6 +121,7 @@ impl Simulation<'_> {
         // The end of the step, or of what its first event leaves of it.
         let mut state = State::origin(kernel.size());
         if !goes_on {
+            self.idle_steps = 0;
             self.observers.enter(mode, &self.here);
         }
 
@@ -136,7 +137,8 @@ impl Simulation<'_> {
                     stiffness.explicit_failure();
                     return Ok(Stop::Method);
                 }
-                let mass = vanished(equations.context, method.state()).filter(|_| mass_changes);
+                let mass =
+                    vanished(equations.context, method.state(), VANISHED).filter(|_| mass_changes);
                 return Err(failure_of_step(error, mass, is_explicit.then_some(mode)));
             }
 
@@ -209,7 +211,7 @@ impl Simulation<'_> {
                     (None, _) => false,
                 };
                 if changes {
-                    if let Some(reason) = vanished(equations.context, &state) {
+                    if let Some(reason) = vanished(equations.context, &state, VANISHED) {
                         return Err(Box::new(reason));
                     }
                     let mode = mode.name;
@@ -345,7 +347,8 @@ impl Simulation<'_> {
             }
             self.idle_steps = if advances { 0 } else { self.idle_steps + 1 };
             if self.idle_steps > MOST_IDLE {
-                return Err(Box::new(self.runaway()));
+                let mass = vanished(equations.context, &state, VANISHES).filter(|_| mass_changes);
+                return Err(Box::new(mass.unwrap_or_else(|| self.runaway())));
             }
             self.signs.go_on();
             if chooses && !is_explicit {

@@ -9,7 +9,10 @@ use crate::numerics::{Definite, Matrix, NotPositive, Size};
 /// Part of itself to which a pivot has fallen where it is the reason why no step can be made. Masses that vary stay far
 /// above it; a series with a radius of convergence ρ of one that vanishes ends where ρ⁻³⁴ leaves the range of doubles,
 /// and a mass may still be ρ^½ there, in units of a time constant.
-const VANISHED: f64 = 1e-4;
+pub(super) const VANISHED: f64 = 1e-4;
+
+/// The same where it falls within a time that is none: a mass that stays falls by no part of itself there.
+pub(super) const VANISHES: f64 = 0.5;
 
 /// The pivots of an inertia, all of which must be positive.
 pub(super) fn pivots<M: Matrix>(inertia: &M) -> Result<<M::Size as Size>::Vector, NotPositive> {
@@ -17,13 +20,13 @@ pub(super) fn pivots<M: Matrix>(inertia: &M) -> Result<<M::Size as Size>::Vector
 }
 
 /// Whether an effective mass has vanished on the way from one state, coordinates and velocities, to another, or is
-/// beyond: which.
+/// beyond: which. It has where no more than a part of it is left.
 #[cold]
 pub(super) fn vanished<F: Size>(
     kernel: &ModeKernel<F>,
     context: &Context,
     (problem, mode): (&Problem, &Mode),
-    [from, to]: [[&F::Vector; 2]; 2],
+    ([from, to], part): ([[&F::Vector; 2]; 2], f64),
 ) -> Option<Reason> {
     let at = |[q, v]: [&F::Vector; 2]| pivots(&kernel.inertia(context, q, v));
     let before = at(from).ok()?;
@@ -36,7 +39,7 @@ pub(super) fn vanished<F: Size>(
         }
         Err(NotPositive { row, pivot }) => (row, pivot / before[row]),
     };
-    (left <= VANISHED).then(|| Reason::VanishingMass {
+    (left <= part).then(|| Reason::VanishingMass {
         mode: mode.name,
         coordinate: problem.model.coordinates[mode.free[i]].name,
         left,
