@@ -153,7 +153,7 @@ impl<'p> Simulation<'p> {
                 Departure::Down { .. } => (Watch::Violated, 0.0),
                 // A force that nothing tells from zero does not pull (a block that rests on another, and both fall freely).
                 Departure::Stays { until }
-                    if mode.is_of_forces(watched.guard, self.context.discrete()) =>
+                    if until > 0.0 && mode.is_of_forces(watched.guard, self.context.discrete()) =>
                 {
                     (Watch::Armed, until)
                 }

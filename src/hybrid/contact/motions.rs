@@ -30,7 +30,8 @@ impl<'p> Simulation<'p> {
             let [of_a, of_b] = [a, b].map(|of| of.candidate.holds());
             of_b.cmp(&of_a).then_with(|| spans(b).total_cmp(&spans(a)))
         });
-        if self.another(case, &admitted).is_some() {
+        let mut other = self.another(case, &admitted);
+        if other.is_some() {
             // A force that is as small as the state's rounding makes it may be zero within its bound, so that what pulls is closed, beside a
             // gap that is seen to open (a block on another, which both spin in free flight). Then the state is taken as it is.
             let states = admitted.iter().map(|a| a.candidate.states.clone());
@@ -39,11 +40,13 @@ impl<'p> Simulation<'p> {
                 .collect();
             if !exact.is_empty() {
                 admitted = exact;
+                other = self.another(case, &admitted);
             }
         }
-        if self.another(case, &admitted).is_some() && admitted.iter().any(|a| a.orders.are_known) {
+        if other.is_some() && admitted.iter().any(|a| a.orders.are_known) {
             // What no derivative tells from zero gives way to what is told.
             admitted.retain(|a| a.orders.are_known);
+            other = self.another(case, &admitted);
         }
         let touch = || -> Vec<&'static str> {
             let all = case.touching.iter().zip(&case.contacts.contacts);
@@ -54,7 +57,7 @@ impl<'p> Simulation<'p> {
         if admitted.is_empty() {
             return Err(Reason::NoMotion { contacts: touch() });
         }
-        if let Some(other) = self.another(case, &admitted) {
+        if let Some(other) = other {
             let name = |a: &Admitted| {
                 let mut discrete = self.context.discrete().to_vec();
                 write_states(case.contacts, &a.candidate.states, &mut discrete);
