@@ -6,8 +6,11 @@
 //! The rest of the series is left out only once it moves nothing by more than the tolerances of
 //! the run.
 
+mod prediction;
+
 use super::instant::Instant;
 use crate::numerics::{Memory, Persist};
+use prediction::Prediction;
 use std::sync::atomic::{Ordering, compiler_fence};
 
 /// Longest pattern, in events: both pivots × (landing, slip, stick, reversal).
@@ -100,19 +103,13 @@ pub struct Accumulation {
     count: usize,
     /// Number of last events since each of which something moved, but nothing by more than rounding.
     still: usize,
-    /// The limit that was told best, and by how much, s, while patterns repeat ([`Self::predict`]): uncertainty, the two parts
-    /// of its time, number of events since, uncertainties of the last two predictions, the time that was left, s, by which part of
-    /// what was left the last three were off, that part of the last two, its state, and what that may be off by.
-    /// Infinite where none is known.
-    best: Box<[f64]>,
+    /// The limit that was told best.
+    prediction: Prediction,
     /// Number of last events that the motion did not resolve.
     unresolved: usize,
     /// Whether the last event ended a hop that is lower than what the implicit method tells, and the explicit one does.
     needs_series: bool,
 }
-
-/// Numbers of a prediction before those of its state.
-const PREDICTION: usize = 10;
 
 impl Persist for Accumulation {
     fn persist(&mut self, memory: &mut Memory) -> Option<()> {
@@ -122,7 +119,7 @@ impl Persist for Accumulation {
         memory.slice(&mut self.records[self.first..][..ROOM * self.stride])?;
         self.count.persist(memory)?;
         self.still.persist(memory)?;
-        memory.slice(&mut self.best)?;
+        self.prediction.persist(memory)?;
         self.unresolved.persist(memory)?;
         self.needs_series.persist(memory)
     }
@@ -136,10 +133,6 @@ impl Accumulation {
     /// many units in the last place as events are remembered.
     pub const HARDLY: f64 = Self::MEMORY as f64 * f64::EPSILON;
 
-    /// Part of the time that was left by which three predictions in a row of a limit that is believed were off at most. Those of a series
-    /// that is none are no more off by chance once in 10⁵ (0.02³).
-    const TOLD: f64 = 0.02;
-
     /// No events yet. Given are the absolute tolerances of coordinates and velocities, and the number of discrete
     /// states.
     pub fn new(absolute: Box<[f64]>, discretes: usize) -> Self {
@@ -149,20 +142,17 @@ impl Accumulation {
             false => numbers.next_multiple_of(LINE),
         };
         let records = vec![0.0; ROOM * stride + LINE].into_boxed_slice();
-        let mut best = vec![0.0; PREDICTION + 2 * absolute.len()].into_boxed_slice();
-        [best[0], best[4], best[5]] = [f64::INFINITY; 3];
-        [best[8], best[9]] = [f64::INFINITY; 2];
         Accumulation {
             times: [[0.0; 2]; ROOM],
             keys: [0; ROOM],
             first: records.as_ptr().align_offset(LINE * size_of::<f64>()) % LINE,
             records,
             stride,
+            prediction: Prediction::none(absolute.len()),
             absolute,
             discretes,
             count: 0,
             still: 0,
-            best,
             unresolved: 0,
             needs_series: false,
         }
@@ -179,8 +169,7 @@ impl Accumulation {
     pub fn clear(&mut self) {
         (self.count, self.still, self.unresolved) = (0, 0, 0);
         self.needs_series = false;
-        [self.best[0], self.best[4], self.best[5]] = [f64::INFINITY; 3];
-        [self.best[8], self.best[9]] = [f64::INFINITY; 2];
+        self.prediction.clear();
     }
 
     /// Compares coordinates and velocities just before the next event with those after the last one: whether something
@@ -375,87 +364,6 @@ impl Accumulation {
             .zip(&self.absolute[rates.clone()])
             .map(|(c, a)| c / a);
         in_tolerances.fold(0.0, f64::max)
-    }
-
-    /// Looks where the last events would have their limit, if they have one, and keeps what is told best: as hops become
-    /// shorter the series is nearer to a geometric one, but their durations are told less well.
-    pub fn predict(&mut self) {
-        self.best[3] += 1.0;
-        if self.best[3] > Self::MEMORY as f64 {
-            self.best[0] = f64::INFINITY;
-        }
-        let known = LONGEST_PATTERN.min(self.count.saturating_sub(1) / 3);
-        let found = (1..=known).filter_map(|p| self.candidate(p));
-        let Some((series, differs)) = found.min_by(|a, b| a.1.total_cmp(&b.1)) else {
-            [self.best[4], self.best[5]] = [f64::INFINITY; 2];
-            [self.best[8], self.best[9]] = [f64::INFINITY; 2];
-            return;
-        };
-        // One prediction may agree with that before by chance.
-        let uncertainty = differs.max(self.best[4]).max(self.best[5]);
-        // Of what was left a pattern before: by so much the prediction of then was right.
-        let part = differs / (series.remaining / series.ratio);
-        let told = part.max(self.best[8]).max(self.best[9]);
-        [self.best[4], self.best[5]] = [differs, self.best[4]];
-        [self.best[8], self.best[9]] = [part, self.best[8]];
-        if uncertainty <= self.best[0] {
-            let limit = self.end_of(&series);
-            let n = limit.state.len();
-            self.best[0] = uncertainty;
-            self.best[1..3].copy_from_slice(&limit.at.parts());
-            self.best[3] = 0.0;
-            [self.best[6], self.best[7]] = [series.remaining, told];
-            self.best[PREDICTION..][..n].copy_from_slice(&limit.state);
-            self.best[PREDICTION + n..].copy_from_slice(&limit.uncertainty);
-        }
-    }
-
-    /// The limit that was told best, if it is still ahead.
-    pub fn predicted(&self) -> Option<Limit> {
-        let parts = [self.best[1], self.best[2]];
-        let at = Instant::of_parts(parts);
-        if self.best[0] == f64::INFINITY || self.count == 0 || at.since(self.at(0)) < 0.0 {
-            return None;
-        }
-        let (state, uncertainty) = self.best[PREDICTION..].split_at(self.absolute.len());
-        Some(Limit {
-            at,
-            state: state.to_vec(),
-            uncertainty: uncertainty.to_vec(),
-            modes: vec![self.mode(0)],
-        })
-    }
-
-    /// The same, if it is believed at the instant `now`: what was left when it was told was known to [`Self::TOLD`] of itself, or what is
-    /// left now is; and at least half of what was left has passed since.
-    pub fn predicted_well(&self, now: Instant) -> Option<Limit> {
-        let limit = self.predicted()?;
-        let left = limit.at.since(now);
-        (self.is_told(left) && 2.0 * left <= self.best[6]).then_some(limit)
-    }
-
-    /// The present state in place of a limit that is believed and has passed, while events that were to end there go on.
-    pub fn passed(&self, now: Instant, [q, v]: [&[f64]; 2]) -> Option<Limit> {
-        let parts = [self.best[1], self.best[2]];
-        let is_over = self.count > 0 && Instant::of_parts(parts).since(now) <= 0.0;
-        if !(is_over && self.is_told(self.best[6])) {
-            return None;
-        }
-        let state = [q, v].concat();
-        let (_, uncertainty) = self.best[PREDICTION..].split_at(self.absolute.len());
-        let moved = state.iter().zip(self.state(0)).map(|(a, b)| (a - b).abs());
-        Some(Limit {
-            at: now,
-            uncertainty: uncertainty.iter().zip(moved).map(|(u, m)| u + m).collect(),
-            state,
-            modes: vec![self.mode(0)],
-        })
-    }
-
-    /// Whether the limit that was told best is told well where so much time is left, s.
-    fn is_told(&self, left: f64) -> bool {
-        self.best[0] < f64::INFINITY
-            && (self.best[7] <= Self::TOLD || self.best[0] <= Self::TOLD * left)
     }
 
     /// Counts the last events that the motion does not resolve; whether the memory is full of them.
