@@ -176,7 +176,8 @@ impl<'p> Simulation<'p> {
         // What it is told to makes this of the time at which it closes.
         let blurs = told > self.accuracy.relative * self.here.now.seconds() * rate.abs();
         let is_low = height <= told;
-        let is_held = || {
+        // Below its own rounding, and how far those of gaps that are held move it.
+        let is_below = || {
             let states = ContactState::all(contacts, self.context.discrete());
             let held = (0..states.len()).filter(|&j| j != k && states[j].is_closed());
             let held = held.filter(|&j| contacts.contacts[j].normal.is_some());
@@ -186,7 +187,7 @@ impl<'p> Simulation<'p> {
             height <= rounding(line) + moved.sum::<f64>()
         };
         match is_explicit {
-            true if places.restitution(k) == 0.0 && is_held() => Resolution::Lost,
+            true if places.restitution(k) == 0.0 && is_below() => Resolution::Lost,
             _ if may_expand && (is_low || blurs) => Resolution::BySeries,
             false if is_low => Resolution::Lost,
             _ if told == 0.0 => Resolution::Exact,
