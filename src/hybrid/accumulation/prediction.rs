@@ -5,19 +5,17 @@ use super::{Accumulation, LONGEST_PATTERN, Limit};
 use crate::hybrid::instant::Instant;
 use crate::numerics::{Memory, Persist};
 
-/// Part of the time that was left by which three predictions in a row of a limit that is believed were off at most. Those of a series
-/// that is none are no more off by chance once in 10⁵ (0.02³).
-const TOLD: f64 = 0.02;
+/// Part of the time that is left by which predictions of a limit that is believed differ at most: two digits, since three
+/// predictions of a series that is none agree in one by chance.
+const TOLD: f64 = 0.01;
 
 /// A limit that was told.
 #[derive(Debug)]
 pub(super) struct Prediction {
     /// What the last three predictions differed by at most, s; infinite where none is known.
     uncertainty: f64,
-    /// The same as a part of what was left a pattern before: by so much they were off.
-    off: f64,
-    /// Both of the last two predictions.
-    last: [[f64; 2]; 2],
+    /// What the last two predictions differed by, s.
+    last: [f64; 2],
     /// Number of events since.
     since: usize,
     /// What was left then, s.
@@ -31,7 +29,6 @@ pub(super) struct Prediction {
 impl Persist for Prediction {
     fn persist(&mut self, memory: &mut Memory) -> Option<()> {
         self.uncertainty.persist(memory)?;
-        self.off.persist(memory)?;
         self.last.persist(memory)?;
         self.since.persist(memory)?;
         self.left.persist(memory)?;
@@ -46,8 +43,7 @@ impl Prediction {
     pub fn none(numbers: usize) -> Self {
         Prediction {
             uncertainty: f64::INFINITY,
-            off: f64::INFINITY,
-            last: [[f64::INFINITY; 2]; 2],
+            last: [f64::INFINITY; 2],
             since: 0,
             left: 0.0,
             at: Instant::default(),
@@ -59,17 +55,12 @@ impl Prediction {
     /// Forgets it.
     pub fn clear(&mut self) {
         self.uncertainty = f64::INFINITY;
-        self.last = [[f64::INFINITY; 2]; 2];
+        self.last = [f64::INFINITY; 2];
     }
 
     /// Whether it is known.
     fn is_known(&self) -> bool {
         self.uncertainty < f64::INFINITY
-    }
-
-    /// Whether it is told well where so much time is left, s.
-    fn is_told(&self, left: f64) -> bool {
-        self.is_known() && (self.off <= TOLD || self.uncertainty <= TOLD * left)
     }
 }
 
@@ -83,19 +74,17 @@ impl Accumulation {
         let known = LONGEST_PATTERN.min(self.count.saturating_sub(1) / 3);
         let found = (1..=known).filter_map(|p| self.candidate(p));
         let Some((series, differs)) = found.min_by(|a, b| a.1.total_cmp(&b.1)) else {
-            self.prediction.last = [[f64::INFINITY; 2]; 2];
+            self.prediction.last = [f64::INFINITY; 2];
             return;
         };
-        let off = differs / series.limit.since(self.at(series.pattern));
         // One prediction may agree with that before by chance.
         let [one, other] = self.prediction.last;
-        let [uncertainty, off_at_most] =
-            [(0, differs), (1, off)].map(|(i, now): (usize, f64)| now.max(one[i]).max(other[i]));
-        self.prediction.last = [[differs, off], one];
+        let uncertainty = differs.max(one).max(other);
+        self.prediction.last = [differs, one];
         if uncertainty <= self.prediction.uncertainty {
             let limit = self.end_of(&series);
             let told = &mut self.prediction;
-            (told.uncertainty, told.off) = (uncertainty, off_at_most);
+            told.uncertainty = uncertainty;
             (told.since, told.left, told.at) = (0, series.remaining, limit.at);
             told.state.copy_from_slice(&limit.state);
             told.state_uncertainty.copy_from_slice(&limit.uncertainty);
@@ -114,30 +103,12 @@ impl Accumulation {
         })
     }
 
-    /// The same, if it is believed at the instant `now`: the last three predictions were right to [`TOLD`] of what was left, or agree to that
-    /// part of what is left now; and at least half of what was left has passed since.
+    /// The same, if it is believed at the instant `now`: what is left is known to [`TOLD`] of itself, and at least half of what was left when
+    /// it was told has passed since.
     pub fn predicted_well(&self, now: Instant) -> Option<Limit> {
         let limit = self.predicted()?;
         let left = limit.at.since(now);
-        let has_passed = 2.0 * left <= self.prediction.left;
-        (self.prediction.is_told(left) && has_passed).then_some(limit)
-    }
-
-    /// The present state in place of a limit that is believed and has passed, while events that were to end there go on.
-    pub fn passed(&self, now: Instant, [q, v]: [&[f64]; 2]) -> Option<Limit> {
-        let told = &self.prediction;
-        let is_over = self.count > 0 && told.at.since(now) <= 0.0;
-        if !(is_over && told.is_told(told.left)) {
-            return None;
-        }
-        let state = [q, v].concat();
-        let moved = state.iter().zip(self.state(0)).map(|(a, b)| (a - b).abs());
-        let uncertainty = told.state_uncertainty.iter().zip(moved);
-        Some(Limit {
-            at: now,
-            uncertainty: uncertainty.map(|(told, moved)| told + moved).collect(),
-            state,
-            modes: vec![self.mode(0)],
-        })
+        let is_told = self.prediction.uncertainty <= TOLD * left;
+        (is_told && 2.0 * left <= self.prediction.left).then_some(limit)
     }
 }

@@ -145,8 +145,7 @@ impl<'p> Simulation<'p> {
 
     /// Whether the hop that ends at a contact was high enough for its end to be known by its gap. A hop of the duration T that ends
     /// with the rate u is about |u| T / 4 high. The series of the explicit method shows all that begins with a bounce of the
-    /// contact itself; one without restitution begins at an impact of another, where what is held moves its gap by a rounding, its own and
-    /// those of the gaps that are held.
+    /// contact itself; one without restitution begins at an impact of another, where what is held moves its gap by a rounding.
     fn resolution(&self, contacts: &Contacts, k: usize, standing: &Standing) -> Resolution {
         let is_explicit = self.made_by == MadeBy::Taylor;
         let may_expand = self.problem.method == Method::Radau;
@@ -162,32 +161,22 @@ impl<'p> Simulation<'p> {
         let at = [&standing.q, &standing.v];
         let places = ContactValues::new(&self.context, contacts, at);
         let line = Line::Normal(k);
-        let geometry = &standing.geometry;
-        let rounding = |line: Line| places.position(line).1;
+        let (_, rounding) = places.position(line);
         // What a step's polynomials make of it.
-        let of_steps = |line: Line| -> f64 {
-            let pairs = geometry.along(line).iter().zip(&geometry.own);
-            let of = |i: usize| Bounded::of_polynomial(standing.q[i], ORDERS, 0.0).error;
-            pairs.map(|(along, &i)| along.abs() * of(i)).sum()
-        };
-        let told = rounding(line) + of_steps(line);
+        let geometry = &standing.geometry;
+        let of_steps: f64 = (geometry.along(line).iter().zip(&geometry.own))
+            .map(|(along, &i)| {
+                along.abs() * Bounded::of_polynomial(standing.q[i], ORDERS, 0.0).error
+            })
+            .sum();
         let (rate, _) = places.rate(line);
         let height = 0.25 * rate.abs() * self.here.now.since(last);
+        let told = rounding + of_steps;
         // What it is told to makes this of the time at which it closes.
         let blurs = told > self.accuracy.relative * self.here.now.seconds() * rate.abs();
         let is_low = height <= told;
-        // Below its own rounding, and how far those of gaps that are held move it.
-        let is_below = || {
-            let states = ContactState::all(contacts, self.context.discrete());
-            let held = (0..states.len()).filter(|&j| j != k && states[j].is_closed());
-            let held = held.filter(|&j| contacts.contacts[j].normal.is_some());
-            let moved = held
-                .map(Line::Normal)
-                .map(|other| geometry.carries(line, other) * (rounding(other) + of_steps(other)));
-            height <= rounding(line) + moved.sum::<f64>()
-        };
         match is_explicit {
-            true if places.restitution(k) == 0.0 && is_below() => Resolution::Lost,
+            true if places.restitution(k) == 0.0 && height <= rounding => Resolution::Lost,
             _ if may_expand && (is_low || blurs) => Resolution::BySeries,
             false if is_low => Resolution::Lost,
             _ if told == 0.0 => Resolution::Exact,

@@ -240,12 +240,6 @@ impl Geometry {
         left.iter().flat_map(row).collect()
     }
 
-    /// How far a line moves where another is brought back to its place by one, in the metric of the masses.
-    pub fn carries(&self, line: Line, other: Line) -> f64 {
-        let [of, by] = [line, other].map(|line| &self.scaled[self.index(line)]);
-        dot(of, by).abs() / dot(by, by)
-    }
-
     /// How much a unit force along a line moves.
     pub fn strength(&self, line: Line) -> f64 {
         let scaled = &self.scaled[self.index(line)];

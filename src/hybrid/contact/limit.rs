@@ -37,12 +37,10 @@ impl<'p> Simulation<'p> {
     }
 
     /// The same where accumulations follow each other ever faster: one body comes to rest on another that still rocks, again and
-    /// again. The limit is that of their own limits, where these tell it well; where it has passed it is now.
+    /// again. The limit is that of their own limits, where these tell it well.
     pub(super) fn rest_of_rests(&mut self, contacts: &'p Contacts) -> Stoppable<bool> {
-        let (rests, now) = (&self.rests, self.here.now);
-        let limit = rests.extrapolated(self.problem.accuracy.relative);
-        let limit = limit.or_else(|| rests.predicted_well(now));
-        match limit.or_else(|| rests.passed(now, [&self.here.q, &self.here.v])) {
+        let limit = self.rests.extrapolated(self.problem.accuracy.relative);
+        match limit.or_else(|| self.rests.predicted_well(self.here.now)) {
             Some(limit) => self.rest_contacts_by(contacts, limit),
             None => Ok(false),
         }
