@@ -121,9 +121,10 @@ impl Simulation<'_> {
         // The end of the step, or of what its first event leaves of it.
         let mut state = State::origin(kernel.size());
         if !goes_on {
-            self.idle_steps = 0;
             self.observers.enter(mode, &self.here);
         }
+        // Steps in a row after which the time is the same double.
+        let mut idle_steps = 0;
 
         loop {
             // 1. The step.
@@ -339,14 +340,13 @@ impl Simulation<'_> {
             }
             // 11. Whether the segment ends.
             if let Some(guard) = event {
-                self.idle_steps = 0;
                 if chooses && !is_explicit {
                     stiffness.implicit_step(h);
                 }
                 return Ok(Stop::Event(guard));
             }
-            self.idle_steps = if advances { 0 } else { self.idle_steps + 1 };
-            if self.idle_steps > MOST_IDLE {
+            idle_steps = if advances { 0 } else { idle_steps + 1 };
+            if idle_steps > MOST_IDLE {
                 let mass = vanished(equations.context, &state, VANISHES).filter(|_| mass_changes);
                 return Err(Box::new(mass.unwrap_or_else(|| self.runaway())));
             }

@@ -116,8 +116,6 @@ pub(super) struct Simulation<'p> {
     pub observers: Observers<'p>,
     pub solver: Solver,
     pub solvers: Solvers,
-    /// Steps in a row, without an event, after which the time is the same double.
-    pub idle_steps: u32,
     /// What was seen of the stiffness of each mode.
     pub stiffness: Box<[Stiffness]>,
     /// How well the least determined force of a constraint was determined at best so far.
@@ -212,7 +210,6 @@ impl<'p> Simulation<'p> {
             observers: Observers::new(problem, observer),
             solver: Solver::default(),
             solvers: Solvers::new(modes),
-            idle_steps: 0,
             stiffness: vec![Stiffness::default(); modes.len()].into(),
             best_determined: 0.0,
             smooth_until: f64::NEG_INFINITY,
@@ -378,7 +375,6 @@ impl<'p> Simulation<'p> {
         }
         self.here.shown = self.shown();
         self.at_zero.clear();
-        self.idle_steps = 0;
         self.stiffness.fill(Stiffness::default());
         self.has_inertia.fill(false);
         self.best_determined = 0.0;

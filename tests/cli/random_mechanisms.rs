@@ -2,6 +2,7 @@
 //! random lines, and so are inputs.
 
 use super::random::Random;
+use super::random_models::HEAD;
 use std::fmt::Write;
 
 /// The kinds there are.
@@ -17,15 +18,8 @@ pub enum Kind {
 
 /// A model file, and how many coordinates it has.
 pub fn mechanism(random: &mut Random, kind: Kind) -> (String, usize) {
-    let mut text = String::from(
-        "from codegen.model import *\n\nmodel = Model(\"Random\", source=\"test model: random mechanism\")\n\
-         one = model.parameter(\"one\", \"m\", 1.0, \"length\", above=0)\n\
-         m = model.parameter(\"m\", \"kg\", 1.0, \"mass\", above=0)\n\
-         k = model.parameter(\"k\", \"N/m\", 1.0, \"stiffness\", above=0)\n\
-         c = model.parameter(\"c\", \"N s/m\", 1.0, \"damping\", above=0)\n\
-         g = model.parameter(\"g\", \"m/s^2\", 9.81, \"gravity\", above=0)\n\
-         F = model.input(\"F\", \"N\", \"force\")\n",
-    );
+    let mut text = HEAD.to_owned();
+    text.push_str("g = model.parameter(\"g\", \"m/s^2\", 9.81, \"gravity\", above=0)\n");
     let n = match kind {
         Kind::Cart => cart(random, &mut text),
         Kind::Pendulum => pendulum(random, &mut text),

@@ -15,6 +15,17 @@ use std::path::Path;
 /// Models in the suite: each is derived and compiled twice.
 const SHARE: u64 = 6;
 
+/// How each model begins: units of its numbers, and a force.
+pub const HEAD: &str = "from codegen.model import *
+
+model = Model(\"Random\", source=\"test model: random lines and mechanisms\")
+one = model.parameter(\"one\", \"m\", 1.0, \"length\", above=0)
+m = model.parameter(\"m\", \"kg\", 1.0, \"mass\", above=0)
+k = model.parameter(\"k\", \"N/m\", 1.0, \"stiffness\", above=0)
+c = model.parameter(\"c\", \"N s/m\", 1.0, \"damping\", above=0)
+F = model.input(\"F\", \"N\", \"force\")
+";
+
 /// A line that solves for a coordinate of so many: itself, or with what another or a prescribed motion adds, and by some factor.
 fn line(random: &mut Random, i: usize, n: usize) -> String {
     let factor = match random.next().is_multiple_of(6) {
@@ -52,17 +63,12 @@ fn model(random: &mut Random) -> (String, usize, bool) {
     let alike = random.next().is_multiple_of(3);
     let [of_each, of_pairs] = [random.next(), random.next()];
     let mut next = |seed| Random(if alike { seed } else { random.next() });
-    let mut text = String::from(
-        "from codegen.model import *\n\nmodel = Model(\"Random\", source=\"test model: random lines\")\n\
-         one = model.parameter(\"one\", \"m\", 1.0, \"length\", above=0)\n\
-         m = model.parameter(\"m\", \"kg\", 1.0, \"mass\", above=0)\n\
-         k = model.parameter(\"k\", \"N/m\", 1.0, \"stiffness\", above=0)\n\
-         c = model.parameter(\"c\", \"N s/m\", 1.0, \"damping\", above=0)\n\
-         N = model.parameter(\"N\", \"N\", 1.0, \"force\", above=0)\n\
+    let mut text = HEAD.to_owned();
+    text.push_str(
+        "N = model.parameter(\"N\", \"N\", 1.0, \"force\", above=0)\n\
          speed = model.parameter(\"speed\", \"m/s\", 1.0, \"speed of belts\", above=0)\n\
          ratio = model.parameter(\"ratio\", \"1\", 1.3, \"of a gear\", above=0)\n\
-         z = model.motion(\"z\", \"a table, or a belt\", input=\"a\")\n\
-         F = model.input(\"F\", \"N\", \"force\")\n",
+         z = model.motion(\"z\", \"a table, or a belt\", input=\"a\")\n",
     );
     let mut say = |line: String| writeln!(text, "{line}").unwrap();
     let masses: Vec<f64> = (0..n).map(|_| next(of_each).within(0.5, 2.0)).collect();
