@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 use std::fmt::Write;
 
 /// Version of what a checkpoint holds; another one is refused.
-const VERSION: u32 = 6;
+const VERSION: u32 = 7;
 
 /// A run in parts, at an instant: see [`super::Simulator::snapshot`]. It can be kept by serde, in any format that keeps
 /// texts; numbers of the run are in it by their bits.
@@ -266,7 +266,6 @@ impl<'p> Simulation<'p> {
         self.margins.persist(memory)?;
         self.best_determined.persist(memory)?;
         self.accumulation.persist(memory)?;
-        self.rests.persist(memory)?;
         self.visited.persist(memory)?;
         self.observers.persist(memory)?;
         self.persist_solver(memory)?;

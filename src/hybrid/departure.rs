@@ -16,7 +16,7 @@ use crate::numerics::Size;
 
 /// Roundings that a number has collected, as a part of what it changes by at its present rate since the start: those of a thousand steps
 /// add up as the square root of their number.
-const COLLECTED: f64 = 32.0 * f64::EPSILON;
+pub(super) const COLLECTED: f64 = 32.0 * f64::EPSILON;
 
 /// What is more than this part of the sum of its terms is no zero: the square root of the unit roundoff, so that no rounding decides, were
 /// it of a hundred million operations. Whatever is closer to zero is asked of each operation: two bounds that are not the same could
@@ -175,6 +175,23 @@ impl<'p> Simulation<'p> {
             0.0
         };
         value.value <= error + COLLECTED * (rate.value * now).abs()
+    }
+
+    /// How high a hop is that begins with the rate u with which the gap of a guard of the present mode closes: u²/2a, where it falls with
+    /// the acceleration a; infinite where it does not. With it that acceleration.
+    #[cold]
+    pub fn bounce(&mut self, guard: usize) -> (f64, f64) {
+        self.expand_signals();
+        let [rate, half] = self.ask(guard, |question, expansion| {
+            let Question { mode, tape, .. } = question;
+            expansion.begin(mode, question.at, None);
+            (0..3).for_each(|order| expansion.expand(mode, tape, order));
+            [1, 2].map(|order| expansion.result(tape, guard)[order].value)
+        });
+        match half < 0.0 {
+            true => (rate * rate / (-4.0 * half), -2.0 * half),
+            false => (f64::INFINITY, 0.0),
+        }
     }
 
     /// Whether a guard of the present mode that is a difference, as what is left of friction, is positive, whatever rounding makes of it.

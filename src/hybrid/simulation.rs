@@ -109,8 +109,6 @@ pub(super) struct Simulation<'p> {
     /// Room for a reset: q, v, discrete states.
     pub next: Box<[f64]>,
     pub accumulation: Accumulation,
-    /// The limits of accumulations at which contacts have come to rest, which may accumulate themselves.
-    pub rests: Accumulation,
     pub visited: Visited,
     /// What the run is watched for.
     pub observers: Observers<'p>,
@@ -204,8 +202,7 @@ impl<'p> Simulation<'p> {
             doubts: Doubts::new(modes),
             margins: Margins::new(problem),
             next: zeros(2 * n + model.discretes.len()),
-            accumulation: Accumulation::new(absolute.clone().into(), model.discretes.len()),
-            rests: Accumulation::new(absolute.into(), model.discretes.len()),
+            accumulation: Accumulation::new(absolute.into(), model.discretes.len()),
             visited: Visited::default(),
             observers: Observers::new(problem, observer),
             solver: Solver::default(),
@@ -289,9 +286,7 @@ impl<'p> Simulation<'p> {
                 .zip(absolute)
                 .for_each(|(size, absolute)| *size = absolute / own);
         }
-        for events in [&mut self.accumulation, &mut self.rests] {
-            events.set_absolute([&accuracy.q_absolute, &accuracy.v_absolute]);
-        }
+        (self.accumulation).set_absolute([&accuracy.q_absolute, &accuracy.v_absolute]);
         self.solvers.set_accuracy(self.modes, accuracy);
         Ok(())
     }
@@ -379,7 +374,6 @@ impl<'p> Simulation<'p> {
         self.has_inertia.fill(false);
         self.best_determined = 0.0;
         self.accumulation.clear();
-        self.rests.clear();
         self.visited.clear();
         self.doubts.clear();
         self.margins.clear();

@@ -488,7 +488,7 @@ fn a_checkpoint_of_another_run_is_refused_with_what_differs() {
         let mut simulator = Simulator::new(&slider).unwrap();
         simulator.restore(&damaged).unwrap_err()
     };
-    let why = changed("\"version\":6", "\"version\":1");
+    let why = changed("\"version\":7", "\"version\":1");
     assert_eq!(why, Misfit::Version { found: 1 });
     let why = changed("\"words\":\"", "\"words\":\"0000000000000000");
     assert!(matches!(why, Misfit::Damaged { .. }), "{why}");

@@ -42,6 +42,11 @@ impl Signature {
         let [guard, transition, mode] = [self.guard, self.transition, self.mode].map(|i| i as u64);
         guard | transition << 16 | mode << 32
     }
+
+    /// The index of the guard.
+    fn guard_of(key: u64) -> usize {
+        usize::from(key as u16)
+    }
 }
 
 /// Limit of an accumulation.
@@ -225,6 +230,11 @@ impl Accumulation {
     /// What an event was, and in which mode it happened. Discrete states do not count.
     fn event(&self, back: usize) -> (u64, usize) {
         (self.keys[self.slot(back)], self.mode(back + 1))
+    }
+
+    /// Whether the last event was the fall of a guard.
+    pub fn was(&self, guard: usize) -> bool {
+        self.count > 0 && Signature::guard_of(self.keys[self.slot(0)]) == guard
     }
 
     /// Time since the event before the last one that was like it, s, if one is remembered: others may have happened at the same instant.

@@ -1,13 +1,9 @@
-//! The limit that the last events have told best while patterns repeat, and whether it is believed: as hops become shorter their series is
-//! nearer to a geometric one, but their durations are told less well.
+//! The limit that the last events have told best while patterns repeat: as hops become shorter their series is nearer to a geometric one,
+//! but their durations are told less well.
 
 use super::{Accumulation, LONGEST_PATTERN, Limit};
 use crate::hybrid::instant::Instant;
 use crate::numerics::{Memory, Persist};
-
-/// Part of the time that is left by which predictions of a limit that is believed differ at most: two digits, since three
-/// predictions of a series that is none agree in one by chance.
-const TOLD: f64 = 0.01;
 
 /// A limit that was told.
 #[derive(Debug)]
@@ -18,8 +14,6 @@ pub(super) struct Prediction {
     last: [f64; 2],
     /// Number of events since.
     since: usize,
-    /// What was left then, s.
-    left: f64,
     at: Instant,
     /// Coordinates and velocities, then what they may be off by.
     state: Box<[f64]>,
@@ -31,7 +25,6 @@ impl Persist for Prediction {
         self.uncertainty.persist(memory)?;
         self.last.persist(memory)?;
         self.since.persist(memory)?;
-        self.left.persist(memory)?;
         self.at.persist(memory)?;
         memory.slice(&mut self.state)?;
         memory.slice(&mut self.state_uncertainty)
@@ -45,7 +38,6 @@ impl Prediction {
             uncertainty: f64::INFINITY,
             last: [f64::INFINITY; 2],
             since: 0,
-            left: 0.0,
             at: Instant::default(),
             state: vec![0.0; numbers].into(),
             state_uncertainty: vec![0.0; numbers].into(),
@@ -85,10 +77,19 @@ impl Accumulation {
             let limit = self.end_of(&series);
             let told = &mut self.prediction;
             told.uncertainty = uncertainty;
-            (told.since, told.left, told.at) = (0, series.remaining, limit.at);
+            (told.since, told.at) = (0, limit.at);
             told.state.copy_from_slice(&limit.state);
             told.state_uncertainty.copy_from_slice(&limit.uncertainty);
         }
+    }
+
+    /// Whether no more is left of a limit at the instant `now` than as many durations as are remembered of what happened last: the time
+    /// since the last event at another instant.
+    pub fn is_near(&self, limit: &Limit, now: Instant) -> bool {
+        let since = |back: usize| now.since(self.at(back));
+        let known = self.count.min(Self::MEMORY);
+        let last = (0..known).map(since).find(|time| *time > 0.0);
+        last.is_some_and(|last| limit.at.since(now) <= Self::MEMORY as f64 * last)
     }
 
     /// The limit that was told best, if it is still ahead.
@@ -101,14 +102,5 @@ impl Accumulation {
             uncertainty: told.state_uncertainty.to_vec(),
             modes: vec![self.mode(0)],
         })
-    }
-
-    /// The same, if it is believed at the instant `now`: what is left is known to [`TOLD`] of itself, and at least half of what was left when
-    /// it was told has passed since.
-    pub fn predicted_well(&self, now: Instant) -> Option<Limit> {
-        let limit = self.predicted()?;
-        let left = limit.at.since(now);
-        let is_told = self.prediction.uncertainty <= TOLD * left;
-        (is_told && 2.0 * left <= self.prediction.left).then_some(limit)
     }
 }

@@ -207,28 +207,3 @@ fn impacts_in_turn_at_one_instant_have_a_limit() {
     assert_eq!(squeezed(1.0, 0.5), None);
     assert_eq!(squeezed(20.0, 1.0), None);
 }
-
-/// Limits that are believed on the way, of events after durations that are known to parts of a million: at which event the first was, and
-/// its limit, s.
-fn believed(duration: impl Fn(usize) -> f64) -> Option<(usize, f64)> {
-    let mut accumulation = Accumulation::new([1e-9].into(), 0);
-    let mut now = Instant::new(0.5);
-    // Numbers that look random.
-    let noise = |k: usize| ((k * k * 7919 + k * 104_729) % 2001) as f64 * 1e-9 - 1e-6;
-    (0..2000).find_map(|k| {
-        push(&mut accumulation, 0, now, &[0.0], &[1.0]);
-        accumulation.predict();
-        now = now.plus(duration(k) * (1.0 + noise(k)));
-        let limit = accumulation.predicted_well(now)?;
-        Some((k, limit.at.seconds()))
-    })
-}
-
-#[test]
-fn a_limit_is_believed_once_half_of_what_was_left_of_it_has_passed() {
-    let (k, limit) = believed(|k| 0.9f64.powi(k as i32)).expect("they accumulate");
-    assert!((10..60).contains(&k), "{k}");
-    assert!((limit - 10.5).abs() < 1e-2, "{limit}");
-    // Of what is regular three predictions agree by chance, of a limit that is far off.
-    assert_eq!(believed(|_| 1.0), None);
-}

@@ -3,31 +3,17 @@
 use super::geometry::{Line, write_states};
 use super::hold::{ContactValues, hold, hold_lines};
 use super::impact::Impact;
+use super::resolution::Resolution;
 use super::standing::{Standing, tangent_at};
 use super::{Conditioning, ContactState, Tangent};
 use crate::hybrid::accumulation::Signature;
-use crate::hybrid::advance::MadeBy;
+use crate::hybrid::departure::COLLECTED;
 use crate::hybrid::failure::{Reason, Stoppable};
-use crate::hybrid::problem::Method;
 use crate::hybrid::simulation::{AtZero, Simulation};
 use crate::hybrid::unrest::Restless;
 use crate::model::Contacts;
 use crate::model::name::intern;
-use crate::numerics::{Bounded, ORDERS, Vector};
-
-/// How the end of a hop is known.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Resolution {
-    /// By a gap that is a coordinate, which has no rounding near zero: other gaps may be told less well.
-    Exact,
-    /// By its gap.
-    Seen,
-    /// By its gap; when those that follow close the implicit method tells less well than the tolerance asks for, or not at all, and
-    /// the explicit one does.
-    BySeries,
-    /// Not by its gap: it was lower than what the motion tells.
-    Lost,
-}
+use crate::numerics::Vector;
 
 /// Guards of a contact.
 pub(super) const GUARDS: usize = Contacts::GUARDS;
@@ -74,13 +60,12 @@ impl<'p> Simulation<'p> {
         };
         self.accumulation.set_needs_series(needs_series);
         let unresolved = hop == Resolution::Lost;
-        if unresolved && (self.rest_unresolved(contacts)? || self.rest_of_rests(contacts)?) {
+        if unresolved
+            && (self.rest_unresolved(contacts)? || self.rest_here(contacts, (k, &standing))?)
+        {
             return Ok(());
         }
         if closes && self.accumulation.is_unresolved(unresolved) {
-            if self.rest_of_rests_anyhow(contacts)? {
-                return Ok(());
-            }
             return Err(Box::new(Reason::Chattering {
                 transitions: vec![intern(&format!("{} strikes", contacts.contacts[k].name))],
                 missing: Restless::BelowRounding,
@@ -141,47 +126,6 @@ impl<'p> Simulation<'p> {
         self.here.set_free(free, [&q, &v, &a]);
         self.set_context();
         self.set_accelerations(&contacts.kernel)
-    }
-
-    /// Whether the hop that ends at a contact was high enough for its end to be known by its gap. A hop of the duration T that ends
-    /// with the rate u is about |u| T / 4 high. The series of the explicit method shows all that begins with a bounce of the
-    /// contact itself; one without restitution begins at an impact of another, where what is held moves its gap by a rounding.
-    fn resolution(&self, contacts: &Contacts, k: usize, standing: &Standing) -> Resolution {
-        let is_explicit = self.made_by == MadeBy::Taylor;
-        let may_expand = self.problem.method == Method::Radau;
-        if self.signs.unseen() {
-            return match may_expand && !is_explicit {
-                true => Resolution::BySeries,
-                false => Resolution::Lost,
-            };
-        }
-        let Some((last, ..)) = self.accumulation.last() else {
-            return Resolution::Seen;
-        };
-        let at = [&standing.q, &standing.v];
-        let places = ContactValues::new(&self.context, contacts, at);
-        let line = Line::Normal(k);
-        let (_, rounding) = places.position(line);
-        // What a step's polynomials make of it.
-        let geometry = &standing.geometry;
-        let of_steps: f64 = (geometry.along(line).iter().zip(&geometry.own))
-            .map(|(along, &i)| {
-                along.abs() * Bounded::of_polynomial(standing.q[i], ORDERS, 0.0).error
-            })
-            .sum();
-        let (rate, _) = places.rate(line);
-        let height = 0.25 * rate.abs() * self.here.now.since(last);
-        let told = rounding + of_steps;
-        // What it is told to makes this of the time at which it closes.
-        let blurs = told > self.accuracy.relative * self.here.now.seconds() * rate.abs();
-        let is_low = height <= told;
-        match is_explicit {
-            true if places.restitution(k) == 0.0 && height <= rounding => Resolution::Lost,
-            _ if may_expand && (is_low || blurs) => Resolution::BySeries,
-            false if is_low => Resolution::Lost,
-            _ if told == 0.0 => Resolution::Exact,
-            _ => Resolution::Seen,
-        }
     }
 
     /// What contacts that have just closed do: an impact, if one of them comes with a rate; by which contact it is
@@ -273,13 +217,22 @@ impl<'p> Simulation<'p> {
                 false => tangent_at(&contacts.contacts[j], j, &places),
             }
         };
+        let geometry = &standing.geometry;
         for j in (0..touches.len()).filter(|&j| touches[j]) {
             let contact = &contacts.contacts[j];
             let (rate, rounding) = match contact.normal {
                 Some(_) => places.rate(Line::Normal(j)),
                 None => (0.0, 0.0),
             };
-            if rate < -rounding {
+            // What roundings that its place has collected make of its rate.
+            let rates = geometry.own.iter().map(|&i| standing.v[i]);
+            let collected = |along: &[f64]| {
+                let terms = along.iter().zip(rates);
+                COLLECTED * terms.map(|(along, v)| (along * v).abs()).sum::<f64>()
+            };
+            if contact.normal.is_some()
+                && rate < -(rounding + collected(geometry.along(Line::Normal(j))))
+            {
                 let [contact, closes] = [k, j].map(|i| contacts.contacts[i].name);
                 return Err(Box::new(Reason::OwnImpact {
                     contact,

@@ -2,9 +2,10 @@
 
 use super::geometry::{Geometry, Line, multiplier};
 use super::hold::ContactValues;
+use super::resolution::Unresolved;
 use super::standing::Standing;
 use super::{ContactState, Tangent};
-use crate::hybrid::accumulation::{Limit, Signature};
+use crate::hybrid::accumulation::Limit;
 use crate::hybrid::failure::Stoppable;
 use crate::hybrid::instant::Instant;
 use crate::hybrid::simulation::Simulation;
@@ -20,41 +21,49 @@ impl<'p> Simulation<'p> {
         let relative = self.problem.accuracy.relative;
         let limit = self.accumulation.limit(relative);
         match limit.or_else(|| self.accumulation.at_one_instant(relative)) {
-            Some(limit) => self.rest_contacts_by(contacts, limit),
+            Some(limit) => self.rest_contacts_by(contacts, limit, None),
             None => Ok(false),
         }
     }
 
-    /// The same where hops have become lower than the rounding of the gap, so that the motion does not show them any more: the
-    /// limit is where their series ends, however far that is.
+    /// The same where a hop is lower than the rounding of its gap, so that the motion does not show it: the limit is where the series ends,
+    /// if it has no more left than as many such hops as are remembered.
     pub(super) fn rest_unresolved(&mut self, contacts: &'p Contacts) -> Stoppable<bool> {
         let relative = self.problem.accuracy.relative;
         let limit = self.accumulation.extrapolated(relative);
-        match limit.or_else(|| self.accumulation.predicted()) {
-            Some(limit) => self.rest_contacts_by(contacts, limit),
+        let limit = limit.or_else(|| self.accumulation.predicted());
+        match limit.filter(|limit| self.accumulation.is_near(limit, self.here.now)) {
+            Some(limit) => self.rest_contacts_by(contacts, limit, None),
             None => Ok(false),
         }
     }
 
-    /// The same where accumulations follow each other ever faster: one body comes to rest on another that still rocks, again and
-    /// again. The limit is that of their own limits, where these tell it well.
-    pub(super) fn rest_of_rests(&mut self, contacts: &'p Contacts) -> Stoppable<bool> {
-        let limit = self.rests.extrapolated(self.problem.accuracy.relative);
-        match limit.or_else(|| self.rests.predicted_well(self.here.now)) {
-            Some(limit) => self.rest_contacts_by(contacts, limit),
-            None => Ok(false),
-        }
+    /// The same where no series tells its limit: what would bounce no higher than the rounding of its gap rests now. What is left of its
+    /// hops changes neither places nor the sum of its impulses by more than that.
+    pub(super) fn rest_here(
+        &mut self,
+        contacts: &'p Contacts,
+        (k, standing): (usize, &Standing),
+    ) -> Stoppable<bool> {
+        let Some(unresolved) = self.unresolved(contacts, (k, standing)) else {
+            return Ok(false);
+        };
+        let limit = Limit {
+            at: self.here.now,
+            state: [&*self.here.q, &*self.here.v].concat(),
+            uncertainty: vec![0.0; 2 * self.here.q.len()],
+            modes: Vec::new(),
+        };
+        self.rest_contacts_by(contacts, limit, Some(&unresolved))
     }
 
-    /// The same where nothing else tells how the motion goes on: as their own limits have told it best.
-    pub(super) fn rest_of_rests_anyhow(&mut self, contacts: &'p Contacts) -> Stoppable<bool> {
-        match self.rests.predicted() {
-            Some(limit) => self.rest_contacts_by(contacts, limit),
-            None => Ok(false),
-        }
-    }
-
-    fn rest_contacts_by(&mut self, contacts: &'p Contacts, limit: Limit) -> Stoppable<bool> {
+    /// Goes to a limit at which the contacts rest that have neither gap nor rate there, or of which as much is not told.
+    fn rest_contacts_by(
+        &mut self,
+        contacts: &'p Contacts,
+        limit: Limit,
+        unresolved: Option<&Unresolved>,
+    ) -> Stoppable<bool> {
         let accuracy = self.accuracy;
         if limit.at.seconds() >= self.problem.end.time {
             return Ok(false);
@@ -96,8 +105,8 @@ impl<'p> Simulation<'p> {
                 }
                 if state == ContactState::Open {
                     let normal = Line::Normal(k);
-                    let is_there =
-                        is_near(k) && at.rate(normal).0.abs() <= within(normal, &of_rate);
+                    let is_there = unresolved.is_some_and(|of| of.rests[k])
+                        || (is_near(k) && at.rate(normal).0.abs() <= within(normal, &of_rate));
                     if !is_there {
                         return None;
                     }
@@ -109,6 +118,7 @@ impl<'p> Simulation<'p> {
                     (_, ContactState::Sticks) => Tangent::Still,
                     _ => {
                         let (slip, rounding) = at.rate(tangent);
+                        let rounding = rounding + unresolved.map_or(0.0, |of| of.rate);
                         match slip.abs() <= rounding + within(tangent, &unknown) {
                             true => Tangent::Still,
                             false => Tangent::Slips(slip.signum()),
@@ -129,6 +139,7 @@ impl<'p> Simulation<'p> {
             leaves: vec![false; before.len()],
             vanishing: Vec::new(),
         };
+        standing.stop_what_turns(&self.context, contacts);
         let now = std::mem::replace(&mut self.here.now, limit.at);
         let at_zero = self.at_zero.clone();
         let settled = self.settle_contacts(contacts, &mut standing);
@@ -142,17 +153,15 @@ impl<'p> Simulation<'p> {
             self.here.now = now;
             self.at_zero = at_zero;
             self.set_context();
-            return settled.map(|_| false);
+            // A hop that cannot rest goes on.
+            return match unresolved {
+                None => settled.map(|_| false),
+                Some(_) => Ok(false),
+            };
         }
         let lines = standing.lines_with(&near);
         let impulses = self.go_to((contacts, &standing, &lines), now, &limit)?;
         self.commit_with(("rest", false), self.here.mode, Some(impulses))?;
-        let signature = Signature {
-            mode: self.here.shown,
-            ..Signature::default()
-        };
-        (self.rests).push(signature.key(), self.here.now, &self.next);
-        self.rests.predict();
         Ok(true)
     }
 

@@ -35,6 +35,7 @@ mod many;
 mod motions;
 mod phase;
 mod pivoting;
+mod resolution;
 mod share;
 mod singular;
 mod standing;

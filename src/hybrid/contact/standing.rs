@@ -6,6 +6,7 @@ use super::hold::{ContactValues, held_lines, held_with, hold_lines, is_at_zero};
 use super::impact::Impacted;
 use super::{ContactState, Tangent};
 use crate::hybrid::simulation::Simulation;
+use crate::kernel::Context;
 use crate::model::{Contact, Contacts};
 use crate::numerics::{Buffer, Vector};
 
@@ -53,6 +54,29 @@ impl Standing {
             .filter(|line| !self.vanishing.contains(line))
             .collect();
         [places, rates]
+    }
+
+    /// What slides, and would slide the other way once all that touches is held, is still: friction stops a slip and does not turn it.
+    pub fn stop_what_turns(&mut self, context: &Context, contacts: &Contacts) {
+        loop {
+            let [places, rates] = self.held(contacts);
+            let (mut q, mut v) = (self.q.clone(), self.v.clone());
+            hold_lines(context, contacts, [&places, &rates], [&mut q, &mut v]);
+            let at = ContactValues::new(context, contacts, [&q, &v]);
+            let turns = |k: usize, tangent: Option<Tangent>| match tangent {
+                Some(Tangent::Slips(direction)) => at.rate(Line::Tangent(k)).0 * direction <= 0.0,
+                _ => false,
+            };
+            let turned: Vec<usize> = (0..self.touching.len())
+                .filter(|&k| turns(k, self.touching[k]))
+                .collect();
+            if turned.is_empty() {
+                break;
+            }
+            for k in turned {
+                self.touching[k] = Some(Tangent::Still);
+            }
+        }
     }
 
     /// Rates of the coordinates that are no multipliers.
