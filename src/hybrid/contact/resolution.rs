@@ -88,7 +88,7 @@ impl Simulation<'_> {
         };
         let roundings = self.roundings(contacts, standing);
         let line = Line::Normal(k);
-        let (rounding, told) = (roundings.of(line), roundings.with_steps(line));
+        let told = roundings.with_steps(line);
         let (rate, _) = roundings.places.rate(line);
         let restitution = roundings.places.restitution(k);
         let height = 0.25 * rate.abs() * self.here.now.since(last);
@@ -96,9 +96,8 @@ impl Simulation<'_> {
         let blurs = told > self.accuracy.relative * self.here.now.seconds() * rate.abs();
         let is_low = height <= told;
         let guard = GUARDS * k;
-        let is_lost = height <= rounding
-            && (restitution == 0.0
-                || (!self.accumulation.was(guard) && self.bounce(guard).0 <= told));
+        let begins_apart = restitution == 0.0 || !self.accumulation.was(guard);
+        let is_lost = is_low && begins_apart && self.bounce(guard).0 <= told;
         match is_explicit {
             true if is_lost => Resolution::Lost,
             _ if may_expand && (is_low || blurs) => Resolution::BySeries,
