@@ -77,29 +77,26 @@ impl Simulation<'_> {
     ) -> Resolution {
         let is_explicit = self.made_by == MadeBy::Taylor;
         let may_expand = self.problem.method == Method::Radau;
-        if self.signs.unseen() {
-            return match may_expand && !is_explicit {
-                true => Resolution::BySeries,
-                false => Resolution::Lost,
-            };
-        }
-        let Some((last, ..)) = self.accumulation.last() else {
+        let unseen = self.signs.unseen();
+        let last = self.accumulation.last().map(|(last, ..)| last);
+        if last.is_none() && !unseen {
             return Resolution::Seen;
-        };
+        }
         let roundings = self.roundings(contacts, standing);
         let line = Line::Normal(k);
         let told = roundings.with_steps(line);
         let (rate, _) = roundings.places.rate(line);
         let restitution = roundings.places.restitution(k);
-        let height = 0.25 * rate.abs() * self.here.now.since(last);
+        let height = |last| 0.25 * rate.abs() * self.here.now.since(last);
         // What it is told to makes this of the time at which it closes.
         let blurs = told > self.accuracy.relative * self.here.now.seconds() * rate.abs();
-        let is_low = height <= told;
+        let is_low = unseen || last.is_some_and(|last| height(last) <= told);
         let guard = GUARDS * k;
         let begins_apart = restitution == 0.0 || !self.accumulation.was(guard);
         let is_lost = is_low && begins_apart && self.bounce(guard).0 <= told;
         match is_explicit {
-            true if is_lost => Resolution::Lost,
+            _ if is_lost => Resolution::Lost,
+            true if unseen => Resolution::Lost,
             _ if may_expand && (is_low || blurs) => Resolution::BySeries,
             false if is_low => Resolution::Lost,
             _ if told == 0.0 => Resolution::Exact,
