@@ -233,3 +233,30 @@ fn rests_that_accumulate_end_where_their_limit_is() {
         assert!(energy.imbalance().abs() < 1e-10 * turnover, "{energy:?}");
     });
 }
+
+/// Carts whose contacts hop on each other with rates that are nothing but roundings: at 7.6 ns in turn for ever, or, where a limit of such hops was
+/// believed, 26 ms of motion were left out and 1.4 J lost without a word.
+#[test]
+fn hops_that_nothing_tells_rest_where_they_are() {
+    let carts = [
+        (0.0, 0.0, 0.03, -0.929, "103.922 sin(5.271 t+1.33)"),
+        (0.09, 0.09, 0.06, -0.134, "80.505 sin(4.436 t+0.44)"),
+        (0.09, 0.0, 0.0, 0.269, "106.257 sin(2.005 t+3.94)"),
+    ];
+    with_each_method(|| {
+        for (mu, nu, e, b, push) in carts {
+            let mut cart = problem("loaded_cart", &[("mu", mu), ("nu", nu), ("e", e)]);
+            cart.set_initial("b", b).unwrap();
+            cart.set_input("push", sine(push)).unwrap();
+            cart.set_tolerance(1e-12);
+            cart.end.time = 3.0;
+            let run = run(&cart);
+            assert!(run.events.len() < 1000, "{push}: {}", run.events.len());
+            let energy = run.energy.as_ref().unwrap();
+            let turnover =
+                energy.initial.abs() + energy.input_work.abs() + energy.lost_at_impacts.abs();
+            let imbalance = energy.imbalance().abs();
+            assert!(imbalance < 1e-11 * turnover, "{push}: {energy:?}");
+        }
+    });
+}

@@ -16,6 +16,7 @@
 //! - `impact`: what an impact does, under the law of the scene.
 //! - `phase`: all outcomes of one phase of it, each tried on its impulses and rates.
 //! - `standing`: what touches at an instant, and what of it has no rate.
+//! - `resolution`: how the end of a hop is known, and what is lower than that.
 //! - `event`: from the fall of a guard to the next set.
 //! - `by_hand`: transitions by hand beside contacts; `guarded`: those of their guards that contacts hold, or have held until now.
 //! - `start`: the set that a run starts in; `equilibrium`: where it starts at rest.
