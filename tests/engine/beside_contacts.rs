@@ -92,6 +92,23 @@ fn kicker([slow, fast, kick]: [f64; 3], u: f64) -> Problem {
     problem
 }
 
+/// It falls, slides, and is kicked while its gap is what rounding has left of it, -1e-48 m: the kick was refused for that.
+#[test]
+fn a_block_that_has_fallen_is_kicked_from_where_it_slides() {
+    for method in [Method::Taylor, Method::Radau] {
+        let given = [("m", 1.8473), ("pull", 24.3247), ("fast", 2.0153)];
+        let mut block = problem("kicker", &given);
+        block.set_initial("x.rate", 0.194).unwrap();
+        block.set_initial("y", 0.707).unwrap();
+        block.set_tolerance(1e-12);
+        block.method = method;
+        block.end.time = 2.0;
+        let run = run(&block);
+        let kicks = run.events.iter().filter(|e| e.transition == "turn_on");
+        assert!(kicks.count() > 3, "{:?}", transitions(&run));
+    }
+}
+
 #[test]
 fn a_block_is_kicked_and_driven_beside_its_contact() {
     // The second turns off while it flies.

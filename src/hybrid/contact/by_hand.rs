@@ -155,7 +155,11 @@ impl<'p> Simulation<'p> {
                 let (n, free, size) =
                     (self.here.q.len(), &self.mode().free, contacts.kernel.size());
                 let state = [0, n].map(|from| size.vector(|i| self.next[from + free[i]]));
-                self.standing_of(contacts, state, &|_| [0.0; 2])
+                // What was held, or lands at this instant, is on its gap to a rounding of what is typical of it.
+                let geometry = Geometry::new(&self.context, contacts, state.each_ref());
+                let sizes = size.vector(|i| self.sizes[free[i]]);
+                let rounding = |line| [geometry.rounding(line, &sizes), 0.0];
+                self.standing_of(contacts, state, &rounding)
                     .map_err(|why| Box::new(Reason::Reset { name, why }))?
             }
         };

@@ -30,7 +30,7 @@ pub(super) enum Resolution {
 pub(super) struct Unresolved {
     /// Of each, whether it would hop no higher than the rounding of its gap.
     pub rests: Vec<bool>,
-    /// The rate with which the one that closes would do so, m/s or rad/s: no slip rate is told below that.
+    /// The rate with which the one that closes would do so, in the unit of its gap a second: no slip rate is told below that.
     pub rate: f64,
 }
 
@@ -42,16 +42,12 @@ struct Roundings<'a> {
 }
 
 impl Roundings<'_> {
-    /// That of what a line is about.
-    fn of(&self, line: Line) -> f64 {
-        self.places.position(line).1
-    }
-
-    /// The same, and what a step's polynomials make of it.
+    /// That of what a line is about, and what a step's polynomials make of it.
     fn with_steps(&self, line: Line) -> f64 {
         let pairs = self.geometry.along(line).iter().zip(&self.geometry.own);
         let of = |i: usize| Bounded::of_polynomial(self.q[i], ORDERS, 0.0).error;
-        self.of(line) + pairs.map(|(along, &i)| along.abs() * of(i)).sum::<f64>()
+        let (_, rounding) = self.places.position(line);
+        rounding + pairs.map(|(along, &i)| along.abs() * of(i)).sum::<f64>()
     }
 }
 
@@ -117,7 +113,8 @@ impl Simulation<'_> {
             return None;
         }
         let (_, acceleration) = self.bounce(GUARDS * k);
-        let rate = (2.0 * acceleration * roundings.with_steps(Line::Normal(k))).sqrt();
+        let lowest = roundings.with_steps(Line::Normal(k));
+        let rate = (2.0 * acceleration * lowest).sqrt();
         let states = ContactState::all(contacts, self.context.discrete());
         let rests: Vec<bool> = (states.iter().enumerate())
             .map(|(j, state)| {
