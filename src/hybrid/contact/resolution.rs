@@ -81,6 +81,7 @@ impl Simulation<'_> {
         let roundings = self.roundings(contacts, standing);
         let line = Line::Normal(k);
         let told = roundings.with_steps(line);
+        let (_, rounding) = roundings.places.position(line);
         let (rate, _) = roundings.places.rate(line);
         let restitution = roundings.places.restitution(k);
         let height = |last| 0.25 * rate.abs() * self.here.now.since(last);
@@ -89,7 +90,10 @@ impl Simulation<'_> {
         let is_low = unseen || last.is_some_and(|last| height(last) <= told);
         let guard = GUARDS * k;
         let begins_apart = restitution == 0.0 || !self.accumulation.was(guard);
-        let is_lost = is_low && begins_apart && self.bounce(guard).0 <= told;
+        let lowest = if restitution == 0.0 { told } else { rounding };
+        let is_lost = (unseen || last.is_some_and(|last| height(last) <= lowest))
+            && begins_apart
+            && self.bounce(guard).0 <= lowest;
         match is_explicit {
             _ if is_lost => Resolution::Lost,
             true if unseen => Resolution::Lost,

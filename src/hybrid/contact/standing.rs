@@ -24,8 +24,8 @@ pub(super) struct Standing {
 }
 
 impl Standing {
-    /// The lines along which impulses may have come: first those of what touches, then those of contacts that are near, which
-    /// account only for what the first do not.
+    /// The lines along which impulses may have come: first those along which what touches pushes, then those along which it rubs, then those
+    /// of contacts that are near. Each accounts only for what those before do not: where a gap closes against friction its impact stops the slip.
     pub fn lines_with(&self, near: &[bool]) -> Vec<Line> {
         let touches = |line: &Line| match *line {
             Line::Normal(k) | Line::Tangent(k) => self.touching[k].is_some(),
@@ -36,8 +36,10 @@ impl Standing {
             Line::Constraint(_) => false,
         };
         let (touching, others): (Vec<_>, Vec<_>) = self.geometry.all().partition(touches);
+        let rubs = |line: &Line| matches!(line, Line::Tangent(_));
+        let (rubs, pushes): (Vec<_>, Vec<_>) = touching.into_iter().partition(rubs);
         let near = others.into_iter().filter(is_near);
-        touching.into_iter().chain(near).collect()
+        pushes.into_iter().chain(rubs).chain(near).collect()
     }
 
     /// The lines whose place is held, and those whose rate is, by what touches.
