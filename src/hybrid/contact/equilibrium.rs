@@ -107,6 +107,12 @@ impl<'p> Simulation<'p> {
                 Line::Constraint(_) => false,
             };
         }
+        let pushing: Vec<usize> = (0..n).filter(|&i| held[i].is_some()).collect();
+        let slope = |i: usize, p: usize| -> f64 {
+            let line = held[p].expect("it pushes");
+            let k = own.iter().position(|&own| own == i).expect("no multiplier");
+            geometry.along(line)[k].abs()
+        };
         // Coordinates, and where one is a multiplier its force.
         let split = |x: &[f64]| {
             let place = |i: usize| if own.contains(&i) { x[i] } else { 0.0 };
@@ -123,6 +129,15 @@ impl<'p> Simulation<'p> {
             };
             let (mut r, bounds) = (size.zeros(), contacts.kernel.magnitude(context, at));
             contacts.kernel.residual(context, at, &mut r);
+            // A force that others take is known to the rounding of the greatest that it balances.
+            let known = |i: usize| {
+                let of = |p: &usize| {
+                    let shares = own.iter().filter(|&&j| slope(j, *p) != 0.0);
+                    let parts = shares.map(|&j| bounds[j] / slope(j, *p));
+                    slope(i, *p) * parts.fold(0.0, f64::max)
+                };
+                pushing.iter().map(of).fold(bounds[i], f64::max)
+            };
             let places = ContactValues::new(context, contacts, [&q, &zero]);
             // A place is found to the rounding of typical changes; what is left is taken away at the end.
             let typical = |line| -> f64 {
@@ -131,6 +146,7 @@ impl<'p> Simulation<'p> {
             };
             let of = |i: usize| match held[i] {
                 None if is_idle[i] => (0.0, 0.0),
+                None if own.contains(&i) => (r[i], known(i)),
                 None => (r[i], bounds[i]),
                 Some(Line::Tangent(_)) => (0.0, 0.0),
                 Some(line) => {
@@ -169,7 +185,6 @@ impl<'p> Simulation<'p> {
             .map(|i| if own.contains(&i) { q[i] } else { 0.0 })
             .collect();
         // The search begins with the forces that hold best where the coordinates are.
-        let pushing: Vec<usize> = (0..n).filter(|&i| held[i].is_some()).collect();
         let (loads, by_all): (Vec<(f64, f64)>, _) = (forces(&start), slopes(&start));
         let by_forces = DMatrix::from_fn(own.len(), pushing.len(), |i, j| {
             by_all[(own[i], pushing[j])]
